@@ -270,14 +270,15 @@ fn ranges(symbol: &str, derivative: &ExpressedDerivative, table: &ExpressedTable
 fn notations(sketch: Option<&Path>) -> Result<Answer> {
     let mut text = String::from("notation\n");
     for notation in Notation::NAMED {
+        let usual = Convention::usual(notation);
         let _ = writeln!(
             text,
             "  {notation:<10} {}{}; {}; usually over {}, {}\n             {}",
             notation.title(),
             also(notation),
             notation.names(),
-            notation.usual_argument(),
-            notation.usual_axes(),
+            usual.argument,
+            usual.axes,
             notation.definition()
         );
     }
@@ -294,8 +295,8 @@ fn notations(sketch: Option<&Path>) -> Result<Answer> {
             "notation": n,
             "aliases": n.aliases(),
             "title": n.title(),
-            "usual_argument": n.usual_argument(),
-            "usual_axes": n.usual_axes(),
+            "usual_argument": Convention::usual(n).argument,
+            "usual_axes": Convention::usual(n).axes,
             "definition": n.definition(),
         })
     });

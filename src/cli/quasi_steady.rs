@@ -93,7 +93,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     let mut text = headline::text(&study.name, &results.verdict, &[]);
     let _ = writeln!(text, "\nstatic coefficients: {}", results.coefficients);
     if let Some(first) = results.linear.first() {
-        let arms = first.arms();
+        let arms = first.arms;
         let arm = |d: &Dof| format!("{} {:+.3}", d.symbol(), arms.arm(*d));
         let arms: Vec<String> = results.dofs.iter().map(arm).collect();
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));

@@ -62,7 +62,7 @@ fn linear(structure: &Structure, model: &LinearQuasiSteady, gusts: &GustSeries) 
         let (u, w) = (gusts.along_m_s()[i], gusts.vertical_m_s()[i]);
         (0..n)
             .map(|row| {
-                let q = model.buffeting()[(row, 0)] * u + model.buffeting()[(row, 1)] * w;
+                let q = model.buffeting[(row, 0)] * u + model.buffeting[(row, 1)] * w;
                 let scale = structure.dofs[row].force_scale(structure.width_m);
                 0.5 * structure.air_density_kg_m3 * SPEED * scale * q
             })

@@ -124,7 +124,7 @@ impl Error {
 
     /// JSON that could not be read as what was `expected`.
     pub fn json(expected: impl Into<String>, error: &serde_json::Error) -> Self {
-        let place = Place::position(error.line(), error.column());
+        let place = Place::line(error.line()).column(error.column());
         Self::input(place, expected, error.to_string())
     }
 

@@ -57,13 +57,17 @@ impl Dof {
             Dof::Vertical | Dof::Lateral => width_m,
         }
     }
+    /// Symbol and name of the motion, and name of the force.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Dof::Vertical => ["y", "vertical", "lift"],
+            Dof::Lateral => ["x", "lateral", "drag"],
+            Dof::Torsion => ["θ", "torsion", "moment"],
+        }
+    }
     /// Symbol of the motion: `y`, `x`, `θ`.
     pub fn symbol(self) -> &'static str {
-        match self {
-            Dof::Vertical => "y",
-            Dof::Lateral => "x",
-            Dof::Torsion => "θ",
-        }
+        self.words()[0]
     }
     /// Names of several in words: `vertical, torsion`.
     pub fn names(dofs: &[Dof]) -> String {
@@ -78,19 +82,11 @@ impl Dof {
     }
     /// Name of the force in words.
     pub fn force_name(self) -> &'static str {
-        match self {
-            Dof::Vertical => "lift",
-            Dof::Lateral => "drag",
-            Dof::Torsion => "moment",
-        }
+        self.words()[2]
     }
     /// Name of the motion in words.
     pub fn name(self) -> &'static str {
-        match self {
-            Dof::Vertical => "vertical",
-            Dof::Lateral => "lateral",
-            Dof::Torsion => "torsion",
-        }
+        self.words()[1]
     }
 }
 

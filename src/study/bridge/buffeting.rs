@@ -117,7 +117,7 @@ impl BridgeStudy {
             })?;
             let theory =
                 LinearQuasiSteady::new(&Dof::THREE, statics.arms, 0.0, statics.coefficients());
-            let forces = theory.buffeting();
+            let forces = &theory.buffeting;
             let mut matrix = [[0.0; 2]; 3];
             for (row, dof) in Dof::THREE.into_iter().enumerate() {
                 matrix[dof as usize] = [forces[(row, 0)], forces[(row, 1)]];

@@ -208,8 +208,8 @@ impl SectionForceModels {
         let theory =
             LinearQuasiSteady::new(&block.motions, statics.arms, 0.0, statics.coefficients());
         // rational functions without lags say the same in a form that is saved
-        let (e0, e1) = theory.feed_through();
-        let saved = RationalModel::without_lags(&block.motions, e0.clone(), e1.clone());
+        let saved =
+            RationalModel::without_lags(&block.motions, theory.e0.clone(), theory.e1.clone());
         Self {
             method: "quasi-steady theory".to_owned(),
             source: format!("static coefficients of {}", block.name),

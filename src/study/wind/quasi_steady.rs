@@ -225,7 +225,7 @@ fn linear_rows(
     let mut stepper = Stepper::new(CoupledSection::with_model(structure, linear)?);
     let mut state = stepper.released(&released[..n], &released[n..])?;
     let half_rho_v = 0.5 * structure.air_density_kg_m3 * run.wind_speed_m_s;
-    let buffeting = structure.forces_at_axis(linear.buffeting().clone());
+    let buffeting = structure.forces_at_axis(linear.buffeting.clone());
     let force = |time: f64| -> Vec<f64> {
         let (u, w) = gusts.at(time);
         let scales = structure

@@ -232,10 +232,8 @@ impl<'a> FrequencyDomain<'a> {
             let parts = inside.iter().zip(&rms);
             Ok(parts.map(|(v, r)| part(*v, r * r, 1.0)).collect())
         });
-        let crossing = rate_rms
-            .iter()
-            .zip(&rms)
-            .map(|(rate, rms)| part(*rate, *rms, 0.0) / TAU);
+        let both = rate_rms.iter().zip(&rms);
+        let crossing = both.map(|(rate, rms)| part(*rate, *rms, 0.0) / TAU);
         Ok(BuffetingResponse {
             speed_m_s: self.speed_m_s,
             acceleration_rms: accelerations.iter().map(|v| v.sqrt()).collect(),
@@ -274,8 +272,8 @@ impl<'a> FrequencyDomain<'a> {
             Ok(spectra.iter().copied().chain(rates).chain(part).collect())
         };
         let variances = self.integral(densities, &breaks, TOLERANCE)?;
-        let rows = shapes.nrows();
-        let count = nodes.len();
+        let (rows, count) = (shapes.nrows(), nodes.len());
+        let inside = |row| part(variances[2 * rows + row], variances[row], 1.0);
         Ok(SpanResponse {
             speed_m_s: self.speed_m_s,
             nodes: nodes.to_vec(),
@@ -283,11 +281,7 @@ impl<'a> FrequencyDomain<'a> {
             crossing_frequency_hz: by_node(count, |row| {
                 part(variances[rows + row], variances[row], 0.0).sqrt() / TAU
             }),
-            part_in_tested_range: tested.map(|_| {
-                by_node(count, |row| {
-                    part(variances[2 * rows + row], variances[row], 1.0)
-                })
-            }),
+            part_in_tested_range: tested.map(|_| by_node(count, inside)),
         })
     }
 
@@ -354,11 +348,8 @@ impl<'a> FrequencyDomain<'a> {
         let growing = self.resonances_hz.iter().filter(|r| r.1 < 0.0);
         let known = self.problem.model().known_range();
         let one = |(hertz, _): &(f64, f64)| {
-            let k = ReducedFrequency::from_hertz(
-                *hertz,
-                self.problem.structure.width_m,
-                self.speed_m_s,
-            );
+            let width_m = self.problem.structure.width_m;
+            let k = ReducedFrequency::from_hertz(*hertz, width_m, self.speed_m_s);
             let tested = match known.map(|range| range.contains(k)) {
                 Some(true) => ", inside the tested range",
                 Some(false) => ", where nothing was tested",

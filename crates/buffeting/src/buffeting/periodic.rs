@@ -152,15 +152,9 @@ pub fn span_record(
     let fits =
         |rows: &Vec<Vec<f64>>| rows.len() == count && rows.iter().all(|r| r.len() == samples);
     if samples < 2 || !field.gusts.iter().all(fits) {
-        let expected = format!(
-            "gusts at {}, as many samples at each",
-            counted(count, "node")
-        );
-        return Err(Error::input(
-            "turbulence field",
-            expected,
-            counted(field.gusts[0].len(), "node"),
-        ));
+        let [wanted, found] = [count, field.gusts[0].len()].map(|n| counted(n, "node"));
+        let expected = format!("gusts at {wanted}, as many samples at each");
+        return Err(Error::input("turbulence field", expected, found));
     }
     let (coupled, slowest) = problem.coupled(speed_m_s)?;
     let bridge = PeriodicBridge::new(problem, &coupled, nodes, speed_m_s, field.step_s, samples)?;
@@ -168,19 +162,14 @@ pub fn span_record(
         let rows = &field.gusts[component as usize];
         threads::each(rows, true, |row| bridge.amplitudes(row))
     });
+    let record_s = samples as f64 * field.step_s;
+    let factor = |row: usize| part(found[row].1, found[row].0.sqrt(), 0.0);
     Ok(SpanRecord {
         nodes: problem.names_of(nodes),
         speed_m_s,
-        too_short: too_short(
-            samples as f64 * field.step_s,
-            DECAY_TIMES,
-            slowest,
-            speed_m_s,
-        ),
+        too_short: too_short(record_s, DECAY_TIMES, slowest, speed_m_s),
         rms: by_node(nodes.len(), |row| found[row].0.sqrt()),
-        peak_factor: by_node(nodes.len(), |row| {
-            part(found[row].1, found[row].0.sqrt(), 0.0)
-        }),
+        peak_factor: by_node(nodes.len(), factor),
     })
 }
 
@@ -205,12 +194,24 @@ pub fn span_ensemble(
         Ok(bridge.run(plan.peak_samples(), gusts))
     };
     let runs = all_records(plan.records, plan.seed, progress, record)?;
-    let found = gathered(speed_m_s, plan, nodes, &runs);
+    let of = |row: usize| {
+        let squares: Vec<f64> = runs.iter().map(|r| r[row].0).collect();
+        let (rms, error) = root_and_error(&squares);
+        let peak = runs.iter().map(|r| r[row].1).sum::<f64>() / runs.len() as f64;
+        [rms, error, part(peak, rms, 0.0)]
+    };
+    let each: Vec<[f64; 3]> = (0..3 * nodes.len()).map(of).collect();
+    let list = |which: usize| by_node(nodes.len(), |row| each[row][which]);
     let record_s = samples as f64 * step;
     Ok(SpanEnsemble {
+        speed_m_s,
+        plan: *plan,
         record_s,
         too_short: too_short(record_s, DECAY_TIMES, slowest, speed_m_s),
-        ..found
+        nodes: nodes.to_vec(),
+        rms: list(0),
+        standard_error: list(1),
+        peak_factor: list(2),
     })
 }
 
@@ -372,25 +373,4 @@ fn power(matrix: &DMatrix<f64>, exponent: usize) -> DMatrix<f64> {
         }
     }
     power
-}
-
-fn gathered(speed_m_s: f64, plan: &SpanPlan, nodes: &[usize], runs: &[Run]) -> SpanEnsemble {
-    let of = |row: usize| {
-        let squares: Vec<f64> = runs.iter().map(|r| r[row].0).collect();
-        let (rms, error) = root_and_error(&squares);
-        let peak = runs.iter().map(|r| r[row].1).sum::<f64>() / runs.len() as f64;
-        [rms, error, part(peak, rms, 0.0)]
-    };
-    let each: Vec<[f64; 3]> = (0..3 * nodes.len()).map(of).collect();
-    let list = |which: usize| by_node(nodes.len(), |row| each[row][which]);
-    SpanEnsemble {
-        speed_m_s,
-        plan: *plan,
-        record_s: plan.peak_s(),
-        too_short: None,
-        nodes: nodes.to_vec(),
-        rms: list(0),
-        standard_error: list(1),
-        peak_factor: list(2),
-    }
 }

@@ -135,24 +135,18 @@ impl<'a> BuffetingProblem<'a> {
         turbulence: &Turbulence,
     ) -> Result<Self> {
         let plate = || DMatrix::from_row_slice(2, 2, &[0.0, 2.0 * PI, 0.0, PI / 2.0]);
-        let (of_gusts, gusts) = theory.map_or_else(
-            || (&Dof::TWO[..], plate()),
-            |t| (t.dofs(), t.buffeting().clone()),
-        );
+        let (of_gusts, gusts) = match theory {
+            Some(theory) => (theory.dofs(), theory.buffeting.clone()),
+            None => (&Dof::TWO[..], plate()),
+        };
         let dofs = structure.dofs.as_slice();
         let has_lateral = dofs.contains(&Dof::Lateral);
         let expected = "`[coefficients]` with drag: gust forces of the thin plate, taken without, have no lateral part";
-        ensure(
-            theory.is_some() || !has_lateral,
-            "coefficients",
-            expected,
-            "none",
-        )?;
-        for (place, found) in [
-            ("buffeting: model", model.dofs()),
-            ("buffeting: gust forces", of_gusts),
-        ] {
+        let stated = theory.is_some() || !has_lateral;
+        ensure(stated, "coefficients", expected, "none")?;
+        for (of, found) in [("model", model.dofs()), ("gust forces", of_gusts)] {
             let expected = format!("the section's degrees of freedom {}", Dof::names(dofs));
+            let place = format!("buffeting: {of}");
             ensure(found == dofs, place, expected, Dof::names(found))?;
         }
         turbulence.validate("turbulence")?;

@@ -83,9 +83,8 @@ pub(super) fn integrate(
 fn totals(pieces: &[QuadratureInterval]) -> (Vec<f64>, Vec<f64>) {
     let components = pieces.first().map_or(0, |p| p.value.len());
     let sum = |pick: fn(&QuadratureInterval) -> &Vec<f64>| {
-        (0..components)
-            .map(|i| pieces.iter().map(|p| pick(p)[i]).sum())
-            .collect()
+        let sums = (0..components).map(|i| pieces.iter().map(|p| pick(p)[i]).sum());
+        sums.collect()
     };
     (sum(|p| &p.value), sum(|p| &p.error))
 }
@@ -111,16 +110,12 @@ fn piece(
             gauss[i] += by_gauss * v;
         }
     }
-    let error = kronrod
-        .iter()
-        .zip(&gauss)
-        .map(|(k, g)| (k - g).abs())
-        .collect();
+    let both = kronrod.iter().zip(&gauss);
     Ok(QuadratureInterval {
         low,
         high,
+        error: both.map(|(k, g)| (k - g).abs()).collect(),
         value: kronrod,
-        error,
     })
 }
 

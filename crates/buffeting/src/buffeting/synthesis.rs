@@ -127,8 +127,8 @@ impl BuffetingProblem<'_> {
             let frequency = k as f64 * width_hz;
             let sizes = self.at_nodes(|strips| {
                 let local = strips.wind_factor * speed_m_s;
-                self.line_variance(gust, component, frequency, width_hz, local)
-                    .sqrt()
+                let variance = self.line_variance(gust, component, frequency, width_hz, local);
+                variance.sqrt()
             });
             let coherence = &self.coherence;
             let gaps = coherence.of_gaps(component, &self.nodes, frequency, speed_m_s);

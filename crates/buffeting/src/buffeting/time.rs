@@ -107,22 +107,22 @@ pub fn compare(
     frequency: &BuffetingResponse,
     time: &Ensemble,
 ) -> Vec<ComponentComparison> {
-    dofs.iter()
-        .enumerate()
-        .map(|(i, dof)| ComponentComparison {
-            dof: *dof,
-            frequency_rms: frequency.rms[i],
-            time_rms: time.rms[i],
-            standard_error: time.standard_error[i],
-            deviations: (time.rms[i] - frequency.rms[i]) / time.standard_error[i],
-        })
-        .collect()
+    let of_one = |(i, dof): (usize, &Dof)| ComponentComparison {
+        dof: *dof,
+        frequency_rms: frequency.rms[i],
+        time_rms: time.rms[i],
+        standard_error: time.standard_error[i],
+        deviations: (time.rms[i] - frequency.rms[i]) / time.standard_error[i],
+    };
+    dofs.iter().enumerate().map(of_one).collect()
 }
 
-/// Grid of the records of a plan.
-struct TimeGrid {
+/// The records of a plan at a mean wind speed.
+struct SteppedRecords<'a> {
+    problem: &'a BuffetingProblem<'a>,
+    section: CoupledSection,
+    speed_m_s: f64,
     step_s: f64,
-    samples: usize,
     fourier: Fourier,
     warm_up: usize,
 }
@@ -141,11 +141,10 @@ pub fn time_ensemble(
     plan: &TimePlan,
     progress: OnDone<'_>,
 ) -> Result<Ensemble> {
-    let (section, slowest) = problem.coupled(speed_m_s)?;
-    let grid = grid(problem, slowest, speed_m_s, plan)?;
-    let record = |seed: u64| mean_squares(problem, &section, speed_m_s, &grid, seed);
+    let records = SteppedRecords::new(problem, speed_m_s, plan)?;
+    let record = |seed: u64| records.mean_squares(seed);
     let runs = all_records(plan.records, plan.seed, progress, record)?;
-    Ok(gathered(problem, speed_m_s, &grid, runs))
+    Ok(records.gathered(&runs))
 }
 
 /// Makes every record of a plan by its own seed, side by side; `progress` gets how many are done and how many there are.
@@ -191,96 +190,85 @@ pub(super) fn too_short(
     })
 }
 
-fn grid(
-    problem: &BuffetingProblem<'_>,
-    slowest: f64,
-    speed_m_s: f64,
-    plan: &TimePlan,
-) -> Result<TimeGrid> {
-    let step_s = match plan.step_s {
-        Some(step) => step,
-        None => 1.0 / (SAMPLES_PER_PERIOD * problem.highest_hz),
-    };
-    let duration = match plan.duration_s {
-        Some(duration) => duration,
-        None => DECAY_TIMES_BY_DEFAULT / slowest,
-    };
-    let warm_up_s = DECAY_TIMES / slowest;
-    let expected = at_least(DECAY_TIMES, slowest, speed_m_s);
-    ensure(warm_up_s <= duration, "duration_s", expected, duration)?;
-    // an even number of samples
-    let samples = 2 * (0.5 * duration / step_s).round() as usize;
-    problem.check_record(speed_m_s, step_s, samples)?;
-    Ok(TimeGrid {
-        step_s,
-        samples,
-        fourier: Fourier::new(samples),
-        warm_up: ((warm_up_s / step_s).ceil() as usize).min(samples),
-    })
-}
+impl<'a> SteppedRecords<'a> {
+    fn new(problem: &'a BuffetingProblem<'a>, speed_m_s: f64, plan: &TimePlan) -> Result<Self> {
+        let (section, slowest) = problem.coupled(speed_m_s)?;
+        let finest = || 1.0 / (SAMPLES_PER_PERIOD * problem.highest_hz);
+        let step_s = plan.step_s.unwrap_or_else(finest);
+        let duration = plan.duration_s.unwrap_or(DECAY_TIMES_BY_DEFAULT / slowest);
+        let warm_up_s = DECAY_TIMES / slowest;
+        let expected = at_least(DECAY_TIMES, slowest, speed_m_s);
+        ensure(warm_up_s <= duration, "duration_s", expected, duration)?;
+        // an even number of samples
+        let samples = 2 * (0.5 * duration / step_s).round() as usize;
+        problem.check_record(speed_m_s, step_s, samples)?;
+        Ok(Self {
+            problem,
+            section,
+            speed_m_s,
+            step_s,
+            fourier: Fourier::new(samples),
+            warm_up: ((warm_up_s / step_s).ceil() as usize).min(samples),
+        })
+    }
 
-/// Mean squares of the displacements of one record (n).
-fn mean_squares(
-    problem: &BuffetingProblem<'_>,
-    section: &CoupledSection,
-    speed: f64,
-    grid: &TimeGrid,
-    seed: u64,
-) -> Result<Vec<f64>> {
-    let forces = forces(problem, speed, grid, seed);
-    let n = forces.len();
-    let mut stepper = Stepper::new(section.clone());
-    let mut state = stepper.released(&vec![0.0; n], &vec![0.0; n])?;
-    let mut inputs = Inputs::steady(speed, n);
-    let mut squares = vec![0.0; n];
-    for i in 0..grid.warm_up + grid.samples {
-        let now = (i + grid.samples - grid.warm_up) % grid.samples;
-        let next = (now + 1) % grid.samples;
-        for (dof, force) in forces.iter().enumerate() {
-            inputs.force[dof] = force[now];
-            inputs.force_rate[dof] = (force[next] - force[now]) / grid.step_s;
-        }
-        stepper.advance(&mut state, &inputs, grid.step_s)?;
-        if i >= grid.warm_up {
-            for (sum, q) in squares.iter_mut().zip(&state.values) {
-                *sum += q * q / grid.samples as f64;
+    /// Mean squares of the displacements of one record (n).
+    fn mean_squares(&self, seed: u64) -> Result<Vec<f64>> {
+        let (forces, samples) = (self.forces(seed), self.fourier.length());
+        let n = forces.len();
+        let mut stepper = Stepper::new(self.section.clone());
+        let mut state = stepper.released(&vec![0.0; n], &vec![0.0; n])?;
+        let mut inputs = Inputs::steady(self.speed_m_s, n);
+        let mut squares = vec![0.0; n];
+        for i in 0..self.warm_up + samples {
+            let now = (i + samples - self.warm_up) % samples;
+            let next = (now + 1) % samples;
+            for (dof, force) in forces.iter().enumerate() {
+                inputs.force[dof] = force[now];
+                inputs.force_rate[dof] = (force[next] - force[now]) / self.step_s;
+            }
+            stepper.advance(&mut state, &inputs, self.step_s)?;
+            if i >= self.warm_up {
+                for (sum, q) in squares.iter_mut().zip(&state.values) {
+                    *sum += q * q / samples as f64;
+                }
             }
         }
+        Ok(squares)
     }
-    Ok(squares)
-}
 
-/// Gust forces of one record (n), each at all samples: N/m, N·m/m.
-fn forces(problem: &BuffetingProblem<'_>, speed: f64, grid: &TimeGrid, seed: u64) -> Vec<Vec<f64>> {
-    let (step_s, samples) = (grid.step_s, grid.samples);
-    let parts = problem.forces(speed, step_s, samples, |component| {
-        problem.coefficients(component, speed, step_s, samples, seed)
-    });
-    let columns = parts.column_iter();
-    columns
-        .map(|c| parts_in_time(&grid.fourier, c.as_slice()))
-        .collect()
-}
+    /// Gust forces of one record (n), each at all samples: N/m, N·m/m.
+    fn forces(&self, seed: u64) -> Vec<Vec<f64>> {
+        let (problem, speed, step_s) = (self.problem, self.speed_m_s, self.step_s);
+        let samples = self.fourier.length();
+        let parts = problem.forces(speed, step_s, samples, |component| {
+            problem.coefficients(component, speed, step_s, samples, seed)
+        });
+        let in_time = parts.column_iter();
+        let in_time = in_time.map(|c| parts_in_time(&self.fourier, c.as_slice()));
+        in_time.collect()
+    }
 
-fn gathered(
-    problem: &BuffetingProblem<'_>,
-    speed_m_s: f64,
-    grid: &TimeGrid,
-    runs: Vec<Vec<f64>>,
-) -> Ensemble {
-    let n = problem.structure.dofs.len();
-    let column = |i: usize| runs.iter().map(|squares| squares[i]).collect::<Vec<f64>>();
-    let (rms, standard_error) = (0..n).map(|i| root_and_error(&column(i))).unzip();
-    let roots = |squares: &Vec<f64>| squares.iter().map(|s| s.sqrt()).collect();
-    Ensemble {
-        speed_m_s,
-        step_s: grid.step_s,
-        duration_s: grid.step_s * grid.samples as f64,
-        warm_up_s: grid.step_s * grid.warm_up as f64,
-        rms,
-        standard_error,
-        rms_of_records: runs.iter().map(roots).collect(),
-        expected_gust_variance: problem.expected_variance(speed_m_s, grid.step_s, grid.samples),
+    fn gathered(&self, runs: &[Vec<f64>]) -> Ensemble {
+        let (step_s, samples) = (self.step_s, self.fourier.length());
+        let n = self.problem.structure.dofs.len();
+        let column = |i: usize| runs.iter().map(|squares| squares[i]).collect::<Vec<f64>>();
+        let (rms, standard_error) = (0..n).map(|i| root_and_error(&column(i))).unzip();
+        let roots = |squares: &Vec<f64>| squares.iter().map(|s| s.sqrt()).collect();
+        Ensemble {
+            speed_m_s: self.speed_m_s,
+            step_s,
+            duration_s: step_s * samples as f64,
+            warm_up_s: step_s * self.warm_up as f64,
+            rms,
+            standard_error,
+            rms_of_records: runs.iter().map(roots).collect(),
+            expected_gust_variance: (self.problem).expected_variance(
+                self.speed_m_s,
+                step_s,
+                samples,
+            ),
+        }
     }
 }
 

@@ -92,7 +92,7 @@ impl GustForce {
     ) -> Result<Self> {
         let of_table = format!("the static coefficients `{}`", table.name());
         let theory = QuasiSteady::new(table, Arms::default(), dofs)?.linearised(0.0)?;
-        let rows = theory.buffeting().row_iter();
+        let rows = theory.buffeting.row_iter();
         Ok(Self {
             dofs: dofs.to_vec(),
             coefficients: rows.map(|row| [row[0], row[1]]).collect(),

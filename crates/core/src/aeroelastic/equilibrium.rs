@@ -102,25 +102,20 @@ pub fn static_equilibria(
     speeds_m_s: &[f64],
 ) -> Result<EquilibriumPath> {
     let branch = Branch::new(structure, theory)?;
-    let mut at = branch.still_air()?;
+    let mut at = branch.place(0.0, 0.0)?;
     let mut points = Vec::with_capacity(speeds_m_s.len());
     let mut last = 0.0;
     for &speed in speeds_m_s {
-        ensure(
-            non_negative("wind speeds", speed)? >= last,
-            "wind speeds",
-            "rising numbers",
-            format_args!("{speed} after {last}"),
-        )?;
+        let rises = non_negative("wind speeds", speed)? >= last;
+        let found = format_args!("{speed} after {last}");
+        ensure(rises, "wind speeds", "rising numbers", found)?;
         last = speed;
         let pressure = 0.5 * structure.air_density_kg_m3 * speed * speed;
         let (reached, arrived) = branch.follow(at, pressure)?;
         at = reached;
         if !arrived {
-            return Ok(EquilibriumPath {
-                points,
-                end: Some(branch.end(at)),
-            });
+            let end = Some(branch.end(at));
+            return Ok(EquilibriumPath { points, end });
         }
         points.push(branch.point(at, speed)?);
     }
@@ -171,10 +166,6 @@ impl<'a> Branch<'a> {
             flexibility,
             torsion: torsion.unwrap_or(structure.dofs.len() - 1),
         })
-    }
-
-    fn still_air(&self) -> Result<BranchPoint> {
-        self.place(0.0, 0.0)
     }
 
     /// Compliance and stiffness left at a pressure and rotation.

@@ -39,11 +39,6 @@ impl Place {
         }
     }
 
-    /// A line and a character in it, both from 1.
-    pub fn position(line: usize, character: usize) -> Self {
-        Self::line(line).column(character)
-    }
-
     /// A column of what this is a row of.
     #[must_use]
     pub fn column(self, name: impl fmt::Display) -> Self {

@@ -68,9 +68,7 @@ impl FlutterSearch {
     pub fn of_exact_forces(mut self) -> Self {
         if let Self::Onset(onset) = &mut self {
             onset.in_tested_range = None;
-            onset.interval = OnsetInterval::None {
-                reason: "the forces are exact".to_owned(),
-            };
+            onset.interval = OnsetInterval::none("the forces are exact");
         }
         self
     }

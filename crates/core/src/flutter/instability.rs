@@ -96,11 +96,19 @@ pub fn classify(
     let k_squared = k.full_width() * k.full_width();
     let mut participation = Vec::with_capacity(energy.len());
     for (i, dof) in structure.dofs.iter().enumerate() {
+        // with the others locked
+        let locked = structure.only(&[*dof]);
+        let alone = OneDof {
+            structure,
+            model,
+            dof: i,
+        };
+        let alone = determinant_onset("", &locked, &alone, range, speed_max_m_s)?;
         participation.push(Participation {
             dof: *dof,
             energy_share: energy[i] / total,
             direct_damping: g[(i, i)].im / k_squared,
-            alone_m_s: single_dof_onset(structure, model, i, range, speed_max_m_s)?,
+            alone_m_s: alone.critical_speed_m_s(),
         });
     }
     Ok(ModeAtOnset {
@@ -119,25 +127,6 @@ fn kind(participation: &[Participation]) -> Instability {
         None if fed.any(|p| p.dof == Dof::Torsion) => Instability::TorsionDrivenFlutter,
         None => Instability::CoupledFlutter,
     }
-}
-
-/// Onset speed of one degree of freedom with the others locked, m/s; where it grows already at the highest `K`, the speed
-/// that belongs to that.
-fn single_dof_onset(
-    structure: &Structure,
-    model: &dyn Transfer,
-    dof: usize,
-    range: ReducedFrequencyRange,
-    speed_max_m_s: f64,
-) -> Result<Option<f64>> {
-    let locked = structure.only(&[structure.dofs[dof]]);
-    let alone = OneDof {
-        structure,
-        model,
-        dof,
-    };
-    let search = determinant_onset("", &locked, &alone, range, speed_max_m_s)?;
-    Ok(search.critical_speed_m_s())
 }
 
 /// One diagonal entry of a model about the axis of a structure.

@@ -61,7 +61,11 @@ impl StructureInWind<'_> {
                     let before = at;
                     at = self.step(&before, target, &mut reach)?;
                     on_step(&before, &at)?;
-                    self.drop_outside(&mut at);
+                    if let Some(range) = self.model.known_range() {
+                        let lowest = range.min.full_width() * (1.0 + SEPARATION);
+                        let speed = at.speed;
+                        at.all.retain(|m| self.k(speed, m).full_width() > lowest);
+                    }
                 }
                 if at.speed < target {
                     continue;
@@ -106,15 +110,6 @@ impl StructureInWind<'_> {
         let exit = Exit::Below(range.min);
         reach.exits.push((speed, self.name(branch), exit));
         self.advance(from, speed)
-    }
-
-    fn drop_outside(&self, at: &mut Modes) {
-        let Some(range) = self.model.known_range() else {
-            return;
-        };
-        let lowest = range.min.full_width() * (1.0 + SEPARATION);
-        let speed = at.speed;
-        at.all.retain(|m| self.k(speed, m).full_width() > lowest);
     }
 
     /// Every mode where it is known first, by rising speed: in nearly still air, or at the highest `K` of a table.
@@ -243,12 +238,6 @@ impl StructureInWind<'_> {
         (modes.len() == n).then_some(modes)
     }
 
-    /// The modes at `speed` that settle and oscillate.
-    fn at(&self, from: &Modes, speed: f64) -> Result<Modes> {
-        let all = self.of_each(&from.all, |mode| self.pk_mode(speed, mode))?;
-        Ok(Modes { speed, all })
-    }
-
     fn continuous(&self, before: &Modes, after: &Modes) -> bool {
         let still = before.speed == 0.0;
         let doubled =
@@ -277,7 +266,9 @@ impl Follower for StructureInWind<'_> {
     }
 
     fn continued(&self, before: &Modes, speed: f64) -> Result<Continued> {
-        let after = self.at(before, speed)?;
+        // those that settle and oscillate
+        let all = self.of_each(&before.all, |mode| self.pk_mode(speed, mode))?;
+        let after = Modes { speed, all };
         let clear = after.all.len() == before.all.len() && self.continuous(before, &after);
         Ok(if clear { Ok(after) } else { Err(after) })
     }

@@ -50,20 +50,13 @@ enum Correction {
     Nearest,
 }
 
-impl Correction {
-    fn new(section: &CoupledSection) -> Self {
-        let small = Characteristic::new(section).map(|c| Self::Determinant(Box::new(c)));
-        small
-            .or_else(|| ModalCharacteristic::new(section).map(|c| Self::Shapes(Arc::new(c))))
-            .unwrap_or(Self::Nearest)
-    }
-}
-
 impl<'a> Tracker<'a> {
     pub(super) fn new(section: &'a CoupledSection) -> Self {
+        let small = Characteristic::new(section).map(|c| Correction::Determinant(Box::new(c)));
+        let shapes = || ModalCharacteristic::new(section).map(|c| Correction::Shapes(Arc::new(c)));
         Self {
             section,
-            correction: Correction::new(section),
+            correction: small.or_else(shapes).unwrap_or(Correction::Nearest),
         }
     }
 
@@ -161,8 +154,12 @@ impl Follower for Tracker<'_> {
     }
 
     fn without_lost(&self, before: &Modes, after: Modes) -> Result<Modes> {
-        let mut left = before.clone();
-        if drop_overdamped(&mut left.all) {
+        // the mode with the most damping is not followed further where that is close to critical
+        let damping = |m: &Mode| damping_ratio(m.lambda);
+        let most = before.all.iter().map(damping).fold(f64::MIN, f64::max);
+        if most > NEARLY_CRITICAL {
+            let mut left = before.clone();
+            left.all.retain(|m| damping(m) < most);
             return Ok(left);
         }
         Err(Error::NotDistinct(format!(
@@ -199,17 +196,6 @@ fn single_dof(dof: Dof, mode_ratio: f64) -> bool {
         Dof::Vertical => mode_ratio > 20.0,
         Dof::Lateral => false,
     }
-}
-
-/// Stops following the mode with the most damping if that is close to critical; whether there was one.
-fn drop_overdamped(modes: &mut Vec<Mode>) -> bool {
-    let damping = |m: &Mode| damping_ratio(m.lambda);
-    let most = modes.iter().map(damping).fold(f64::MIN, f64::max);
-    let before = modes.len();
-    if most > NEARLY_CRITICAL {
-        modes.retain(|m| damping(m) < most);
-    }
-    modes.len() < before
 }
 
 /// The corrected modes; `None` when a correction failed, turned real, or two meet.

@@ -9,7 +9,6 @@ use crate::buffeting::{
 use crate::error::Error;
 use crate::flutter::impedance;
 use crate::section::{SectionModel, Structure, Translation};
-use crate::signal::Fourier;
 use aerodeck_lab::files::coefficients::embedded;
 use nalgebra::{Complex, DVector};
 use std::f64::consts::{PI, TAU};
@@ -55,21 +54,19 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
         duration_s: Some(4000.0),
         ..TimePlan::default()
     };
-    let (section, slowest) = problem.coupled(speed).unwrap();
-    let grid = grid(problem, slowest, speed, &plan).unwrap();
-    let stepped = mean_squares(problem, &section, speed, &grid, 5).unwrap();
+    let records = SteppedRecords::new(problem, speed, &plan).unwrap();
+    let (samples, step_s) = (records.fourier.length(), records.step_s);
+    let stepped = records.mean_squares(5).unwrap();
     let n = problem.structure.dofs.len();
-    let forward = Fourier::new(grid.samples);
-    let spectra: Vec<Vec<Complex<f64>>> = forces(problem, speed, &grid, 5)
-        .iter()
-        .map(|force| forward.spectrum(force.iter().copied()))
-        .collect();
+    let forces = records.forces(5).into_iter();
+    let spectra = forces.map(|force| records.fourier.spectrum(force.into_iter()));
+    let spectra: Vec<Vec<Complex<f64>>> = spectra.collect();
     let mut expected = vec![0.0; n];
     let coefficient = |i: usize, k: usize| spectra[i][k];
-    for k in 1..grid.samples / 2 {
-        let f = k as f64 / (grid.samples as f64 * grid.step_s);
-        let x = PI * f * grid.step_s;
-        let line = (x.sin() / x).powi(2) / grid.samples as f64;
+    for k in 1..samples / 2 {
+        let f = k as f64 / (samples as f64 * step_s);
+        let x = PI * f * step_s;
+        let line = (x.sin() / x).powi(2) / samples as f64;
         let force = DVector::from_fn(n, |i, _| coefficient(i, k) * line);
         let motion = impedance(&problem.structure, problem.model(), speed, TAU * f)
             .unwrap()

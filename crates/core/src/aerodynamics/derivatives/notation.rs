@@ -103,23 +103,6 @@ impl Notation {
         }
     }
 
-    /// The axes this notation is usually printed with.
-    pub fn usual_axes(self) -> Axes {
-        match self {
-            Self::Scanlan | Self::Polimi => Axes::HeaveUp,
-            Self::Simiu | Self::Classical | Self::Starossek => Axes::HeaveDown,
-        }
-    }
-
-    /// The argument this notation is usually tabulated over.
-    pub fn usual_argument(self) -> Argument {
-        match self {
-            Self::Scanlan => Argument::VHat,
-            Self::Simiu | Self::Classical | Self::Polimi => Argument::VStar,
-            Self::Starossek => Argument::KSemi,
-        }
-    }
-
     /// The definition, as it stands in the header of files: force per unit length due to harmonic motion `e^{iωt}`, `z`
     /// heave, `x` sway, `theta` rotation, in the axes stated beside it.
     pub fn definition(self) -> &'static str {

@@ -26,14 +26,18 @@ use serde::Serialize;
 pub struct LinearQuasiSteady {
     dofs: Vec<Dof>,
     rotation_rad: f64,
-    arms: Arms,
+    /// The arms `B₁ᵢ/B`.
+    pub arms: Arms,
     coefficients: CoefficientsAt,
+    /// `e₀`, n×n.
     #[serde(with = "crate::state_space::rows")]
-    e0: DMatrix<f64>,
+    pub e0: DMatrix<f64>,
+    /// `e₁`, n×n.
     #[serde(with = "crate::state_space::rows")]
-    e1: DMatrix<f64>,
+    pub e1: DMatrix<f64>,
+    /// Dimensionless forces by the gusts `(u/V, w/V)`, n×2.
     #[serde(with = "crate::state_space::rows")]
-    buffeting: DMatrix<f64>,
+    pub buffeting: DMatrix<f64>,
 }
 
 impl LinearQuasiSteady {
@@ -69,21 +73,6 @@ impl LinearQuasiSteady {
             e1,
             buffeting,
         }
-    }
-
-    /// `e₀` and `e₁`.
-    pub fn feed_through(&self) -> (&DMatrix<f64>, &DMatrix<f64>) {
-        (&self.e0, &self.e1)
-    }
-
-    /// The arms `B₁ᵢ/B`.
-    pub fn arms(&self) -> Arms {
-        self.arms
-    }
-
-    /// Dimensionless forces by the gusts `(u/V, w/V)`, n×2.
-    pub fn buffeting(&self) -> &DMatrix<f64> {
-        &self.buffeting
     }
 }
 

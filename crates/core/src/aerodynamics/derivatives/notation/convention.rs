@@ -23,10 +23,16 @@ pub struct Convention {
 impl Convention {
     /// The notation with the axes and the argument it is usually printed with.
     pub fn usual(notation: Notation) -> Self {
+        let (argument, axes) = match notation {
+            Notation::Scanlan => (Argument::VHat, Axes::HeaveUp),
+            Notation::Polimi => (Argument::VStar, Axes::HeaveUp),
+            Notation::Simiu | Notation::Classical => (Argument::VStar, Axes::HeaveDown),
+            Notation::Starossek => (Argument::KSemi, Axes::HeaveDown),
+        };
         Self {
             notation,
-            argument: notation.usual_argument(),
-            axes: notation.usual_axes(),
+            argument,
+            axes,
         }
     }
 
@@ -99,17 +105,15 @@ impl StatedConvention {
     /// [`Error::Input`] for a contradiction, and for a notation or an argument that nobody states.
     pub fn with_file(self, file: Self) -> Result<Convention> {
         let both = self.and_file(file)?;
-        let notation = both
-            .notation
-            .ok_or_else(|| unstated("notation", &Notation::words()))?;
-        let argument = both
-            .argument
-            .ok_or_else(|| unstated("argument", &Argument::ALL.map(Argument::name).join(", ")))?;
-        Ok(Convention {
-            notation,
-            argument,
-            axes: both.axes.unwrap_or(notation.usual_axes()),
-        })
+        let unstated = |what: &str, choices: String| {
+            let expected = format!("it stated in the file or on import, one of {choices}");
+            Err(Error::input(what, expected, "neither"))
+        };
+        match (both.notation, both.argument) {
+            (None, _) => unstated("notation", Notation::words()),
+            (_, None) => unstated("argument", Argument::ALL.map(Argument::name).join(", ")),
+            _ => Ok(both.or_usual()),
+        }
     }
 
     /// What either states, of which neither may contradict the other.
@@ -133,14 +137,6 @@ impl From<Convention> for StatedConvention {
             axes: Some(all.axes),
         }
     }
-}
-
-fn unstated(what: &str, choices: &str) -> Error {
-    Error::input(
-        what,
-        format!("it stated in the file or on import, one of {choices}"),
-        "neither",
-    )
 }
 
 fn agree<T: PartialEq + fmt::Display>(
