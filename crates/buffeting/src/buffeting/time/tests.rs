@@ -59,7 +59,7 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
     let stepped = records.mean_squares(5).unwrap();
     let n = problem.structure.dofs.len();
     let forces = records.forces(5).into_iter();
-    let spectra = forces.map(|force| records.fourier.spectrum(force.into_iter()));
+    let spectra = forces.map(|force| records.fourier.spectrum(force));
     let spectra: Vec<Vec<Complex<f64>>> = spectra.collect();
     let mut expected = vec![0.0; n];
     let coefficient = |i: usize, k: usize| spectra[i][k];
