@@ -14,6 +14,7 @@
 //! ([`Bridge::of_section`]).
 
 mod banks;
+mod damped;
 mod dampers;
 mod gusts;
 mod modal;

@@ -1,8 +1,8 @@
 //! What a search for flutter answers: an onset, growth from the lowest speed that could be judged, or none.
 
 use super::critical_point::CriticalPoint;
-use super::curves::mode_in_words;
 use super::judged::{RangePassages, StableRange};
+use super::mode_words::mode_in_words;
 use super::onset::{Onset, OnsetInterval};
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};

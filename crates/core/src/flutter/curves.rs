@@ -1,6 +1,7 @@
 //! Frequencies, damping ratios and shapes of the tracked modes over wind speed (V-f and V-g curves).
 
 use super::following::{Follower, Mode};
+use super::mode_words::mode_in_words;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure, non_negative};
@@ -182,20 +183,4 @@ pub fn trace_modes_watched(
         branches,
         ended,
     })
-}
-
-/// The name of a branch as one says it: "torsion mode", "mode 17".
-pub(super) fn mode_in_words(branch: &str) -> String {
-    match branch.starts_with("mode ") {
-        true => branch.to_owned(),
-        false => format!("{branch} mode"),
-    }
-}
-
-/// The same in a sentence: "the torsion mode", "mode 17".
-pub fn the_mode(branch: &str) -> String {
-    match branch.starts_with("mode ") {
-        true => branch.to_owned(),
-        false => format!("the {branch} mode"),
-    }
 }

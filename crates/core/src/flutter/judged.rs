@@ -1,6 +1,6 @@
 //! How far a search can be believed: the speeds at which every mode was inside what was tested.
 
-use super::curves::the_mode;
+use super::mode_words::the_mode;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::bridge::Bridge;
 use crate::error::Result;

@@ -6,10 +6,11 @@
 //! means what measured derivatives mean.
 
 use super::answer::{Findings, FlutterSearch, choose};
-use super::curves::{FlutterCurves, ModePoint, empty_branches, the_mode};
+use super::curves::{FlutterCurves, ModePoint, empty_branches};
 use super::determinant::StructureInWind;
 use super::following::{Follower, OnsetWatch, dimensionless, growing};
 use super::judged::{StableRange, damps_fast_motion, entry_reason};
+use super::mode_words::the_mode;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, ensure, positive};

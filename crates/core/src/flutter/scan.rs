@@ -3,11 +3,11 @@
 
 use super::critical::critical_speeds;
 use super::following::{Mode, dimensionless, growing, oscillates};
+use super::growth_band::GrowthBand;
 use super::judged::StableRange;
 use super::present_modes::PresentModes;
 use super::still_air::lowest_speed;
 use super::tracking::{Tracker, mode_shape};
-use super::unwanted::GrowthBand;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure, non_negative, positive};
 use crate::state_space::{boundary, golden_section};

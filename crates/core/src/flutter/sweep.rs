@@ -20,7 +20,6 @@ pub use samples::stands_at_samples;
 use crate::error::{Result, ensure, positive};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::state_space::Complex64;
-use crossing::Crossing;
 use pencil::{K_MAX, Pencil, Supports, grid, supports};
 
 /// Growth up to this part of the frequency is rounding.
@@ -161,6 +160,17 @@ struct Roots<const N: usize> {
     /// Change for a unit of `ln K`, from the last step.
     slope: [Complex64; N],
     alive: [bool; N],
+}
+
+/// A speed at which an oscillating eigenvalue lies on the imaginary axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Crossing {
+    /// m/s.
+    speed: f64,
+    /// rad/s.
+    omega: f64,
+    /// Whether the motion begins to grow there with rising speed.
+    destabilises: bool,
 }
 
 /// One sample.

@@ -14,14 +14,14 @@
 mod convention;
 mod expressed;
 
-pub use convention::{Argument, Axes, Convention, StatedConvention};
+pub use convention::{Convention, StatedConvention};
 pub use expressed::ExpressedPoint;
 pub use expressed::{ExpressedDerivative, ExpressedTable};
 
 use super::{Derivative, Part};
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::units::ReducedFrequency;
+use crate::units::{ReducedFrequency, ReducedVelocity};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -228,3 +228,128 @@ fn symbol(notation: Notation, derivative: Derivative) -> String {
         _ => format!("{name}*"),
     }
 }
+
+/// Which way heave and lift point. Rotation and moment are nose-up (windward edge up), sway and drag downwind in both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Axes {
+    /// Heave and lift positive up. The crate's own.
+    #[default]
+    HeaveUp,
+    /// Heave `h` and lift positive down.
+    HeaveDown,
+}
+
+impl Axes {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::HeaveUp, Self::HeaveDown];
+
+    /// The word for it in commands and studies.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::HeaveUp => "heave_up",
+            Self::HeaveDown => "heave_down",
+        }
+    }
+
+    /// The axes in words, as in the header of files.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::HeaveUp => {
+                "heave and lift up, rotation and moment nose-up, sway and drag downwind"
+            }
+            Self::HeaveDown => {
+                "heave and lift down, rotation and moment nose-up, sway and drag downwind"
+            }
+        }
+    }
+
+    /// −1 for a derivative that changes its sign when heave and lift are turned round: those that couple heave or lift
+    /// with something else.
+    pub fn sign(self, derivative: Derivative) -> f64 {
+        let couples =
+            (derivative.force() == Dof::Vertical) != (derivative.motion() == Dof::Vertical);
+        if self == Self::HeaveDown && couples {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+}
+
+read_by_name!(
+    /// Reads the word, or the axes in words.
+    Axes,
+    "axes",
+    |text: &str| Self::ALL.into_iter().find(|a| a.name() == text || a.words() == text),
+    "heave_up or heave_down"
+);
+
+/// Reduced velocity or reduced frequency of a test point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Argument {
+    /// `V̂ = V/(ωB)`, as in the NTNU workbooks. The crate's own.
+    #[default]
+    VHat,
+    /// `V* = V/(fB)`.
+    VStar,
+    /// `K = ωB/V`, full width.
+    KFull,
+    /// `k = ωb/V`, semi-chord `b = B/2`.
+    KSemi,
+}
+
+impl Argument {
+    /// All arguments.
+    pub const ALL: [Self; 4] = [Self::VHat, Self::VStar, Self::KFull, Self::KSemi];
+
+    /// The word for it in commands and studies, and the name of its column.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::VHat => "v_hat",
+            Self::VStar => "v_star",
+            Self::KFull => "k_full",
+            Self::KSemi => "k_semi",
+        }
+    }
+
+    /// Name with definition, as it stands in the header of files.
+    pub fn definition(self) -> &'static str {
+        match self {
+            Self::VHat => "v_hat = V/(omega B)",
+            Self::VStar => "v_star = V/(f B)",
+            Self::KFull => "k_full = omega B/V",
+            Self::KSemi => "k_semi = omega b/V, b = B/2",
+        }
+    }
+
+    /// Its value where the reduced velocity is `V̂`; `V̂` itself is kept bit for bit.
+    pub fn at_v_hat(self, v_hat: f64) -> f64 {
+        let k = ReducedFrequency::from_v_hat(v_hat);
+        match self {
+            Self::VHat => v_hat,
+            Self::VStar => ReducedVelocity::from(k).v_star(),
+            Self::KFull => k.full_width(),
+            Self::KSemi => k.semi_chord(),
+        }
+    }
+
+    /// The reduced velocity `V̂` at which it has this value.
+    pub fn to_v_hat(self, value: f64) -> f64 {
+        match self {
+            Self::VHat => value,
+            Self::VStar => ReducedFrequency::from(ReducedVelocity::new(value)).v_hat(),
+            Self::KFull => ReducedFrequency::from_full_width(value).v_hat(),
+            Self::KSemi => ReducedFrequency::from_semi_chord(value).v_hat(),
+        }
+    }
+}
+
+read_by_name!(
+    /// Reads the word, alone or with its definition.
+    Argument,
+    "argument",
+    |text: &str| Self::ALL.into_iter().find(|a| a.name() == text || a.definition() == text),
+    format!("one of {}", Self::ALL.map(Self::definition).join("; "))
+);

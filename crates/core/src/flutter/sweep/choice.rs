@@ -1,7 +1,6 @@
 //! Which of all crossings is the answer, as [`find_onset`](crate::flutter::find_onset) chooses it.
 
-use super::crossing::Crossing;
-use super::{Roots, Sweep, SweepOutcome, SweptOnset};
+use super::{Crossing, Roots, Sweep, SweepOutcome, SweptOnset};
 use crate::units::ReducedFrequency;
 
 impl<const N: usize> Sweep<'_, N> {

@@ -1,6 +1,6 @@
 //! A crossing of the imaginary axis, refined by Newton's method in speed and frequency with exact derivatives.
 
-use super::Sweep;
+use super::{Crossing, Sweep};
 use crate::flutter::dynamic_stiffness::{Determinant, ZERO, oscillator};
 use crate::state_space::Complex64;
 
@@ -8,17 +8,6 @@ use crate::state_space::Complex64;
 const TOLERANCE: f64 = 1e-13;
 /// From a start interpolated on the grid five steps do.
 const STEPS: usize = 20;
-
-/// A speed at which an oscillating eigenvalue lies on the imaginary axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Crossing {
-    /// m/s.
-    pub(super) speed: f64,
-    /// rad/s.
-    pub(super) omega: f64,
-    /// Whether the motion begins to grow there with rising speed.
-    pub(super) destabilises: bool,
-}
 
 impl<const N: usize> Sweep<'_, N> {
     /// The crossing next to a speed (m/s) and circular frequency (rad/s); `None` when Newton's method does not settle.
