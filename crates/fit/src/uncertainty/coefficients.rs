@@ -1,10 +1,10 @@
 //! Estimated parameters of a model, their covariance, and the model as a function of them.
 
-use super::design::Design;
+use super::design::{Design, Effect};
 use super::parameters::{Coordinates, Parameter, per_chain};
 use super::speed_groups::speed_groups;
 use super::speed_prior::SpeedPrior;
-use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
+use super::speed_scatter::{self, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{DiscreteLaguerre, Transfer};
 use crate::error::{Result, ensure};
 use crate::identification::basis::assemble;

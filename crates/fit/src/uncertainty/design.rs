@@ -9,7 +9,6 @@
 //!
 //! A block comes as `Qᵀ` times its rows: whatever is outside the span of its columns contributes nothing.
 
-use super::speed_scatter::Effect;
 use crate::error::{Error, Result};
 use crate::identification::least_squares::StreamingQr;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -78,6 +77,17 @@ impl Block {
             ..self
         }
     }
+}
+
+/// A random effect on the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Effect {
+    /// Each column times an independent standard normal number, P×m.
+    #[serde(with = "crate::state_space::rows")]
+    pub columns: DMatrix<f64>,
+    /// Variance between speeds over that part of it which exceeds the blocks'.
+    pub total: f64,
+    pub degrees_of_freedom: f64,
 }
 
 /// The data that an estimate was made from, for another process as well: blocks of one fit with what is common to all of them.

@@ -14,7 +14,7 @@
 //!
 //! What each speed says alone is [`CoefficientUncertainty::at_each_speed`].
 
-use super::design::Design;
+use super::design::{Design, Effect};
 use super::speed_groups::{only_speed, points_of_a_speed, shared_range, speed_groups};
 use super::speed_prior::SpeedPrior;
 use crate::aerodynamics::TransferMatrix;
@@ -78,17 +78,6 @@ pub(super) struct Slopes {
     pub k: f64,
     pub value: TransferMatrix,
     pub slopes: Vec<TransferMatrix>,
-}
-
-/// A random effect on the parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Effect {
-    /// Each column times an independent standard normal number, P×m.
-    #[serde(with = "crate::state_space::rows")]
-    pub columns: DMatrix<f64>,
-    /// Variance between speeds over that part of it which exceeds the blocks'.
-    pub total: f64,
-    pub degrees_of_freedom: f64,
 }
 
 /// Satterthwaite's degrees of freedom of the variance of blocks and effects together.

@@ -1,6 +1,6 @@
 //! What limits trust in a verdict: a kind with its numbers, a sentence, how much it weighs, and what would settle it.
 
-use super::critical::Phenomenon;
+use super::critical_speed::Phenomenon;
 use serde::{Deserialize, Serialize};
 
 /// How much a doubt weighs.

@@ -7,7 +7,7 @@ use super::reasons::{
     constraints, contradiction, doubted_divergence, left_out, not_judged_below, of_divergence,
     untested,
 };
-use super::sentences::{k_range, speed};
+use super::words::{k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility::FindingSeverity;
 

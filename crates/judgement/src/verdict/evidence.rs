@@ -1,6 +1,6 @@
 //! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
 
-use super::critical::CriticalSpeed;
+use super::critical_speed::CriticalSpeed;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModePoint, MovedOnset, Onset, OnsetInterval, StableRange,
     TestedFrom, UnwantedGrowth,

@@ -1,6 +1,7 @@
 //! Whether a requirement is met.
 
-use super::critical::{Critical, CriticalSpeed, Phenomenon};
+use super::critical::Critical;
+use super::critical_speed::{CriticalSpeed, Phenomenon};
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::RequiredSpeed;
 use serde::{Deserialize, Serialize};

@@ -1,12 +1,12 @@
 //! Single doubts that take more than a line: slow wind, readings that exclude each other, constraints, what a bridge is not whole of.
 
-use super::critical::Phenomenon;
+use super::critical_speed::Phenomenon;
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{
     DivergenceReading, Evidence, FlutterReading, ForceBasis, ModesLeftOut, UntestedPart,
     UntestedParts,
 };
-use super::sentences::{speed, speed_or_none};
+use super::words::{speed, speed_or_none};
 use crate::error::counted;
 use crate::flutter::{CriticalPoint, FastMotion, GrowthBand, MovedOnset, the_mode};
 

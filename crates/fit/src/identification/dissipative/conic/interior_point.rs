@@ -1,6 +1,8 @@
 //! The way through the interior of the cones, by Newton's steps towards the answer.
 
-use super::{Cone, Scaling, Vector, determinant, dot, product, quotient, reach, tail};
+use super::second_order::{
+    Cone, Scaling, Vector, determinant, dot, product, quotient, reach, tail,
+};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::subtract;
 use aerodeck_core::vectorised;
