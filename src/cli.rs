@@ -44,23 +44,20 @@ mod thesis;
 mod train;
 mod tunnel;
 mod validate;
+mod vocabulary;
 mod wind;
 mod wrapping;
 
 pub use answer::Answer;
-
-// the vocabulary of every command
-use common::{StudyArgs, folder_of, in_input, motion_columns, speed_or, spelt, warn};
-use interrupt::{Temporary, uninterrupted};
-use output::{OutputDir, Written, list};
-use progress::Progress;
-use text_table::TextTable;
 
 use crate::error::{Error, Result};
 use answer::{FAILED, NOT_MET};
 use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser};
 use clap_complete::Shell;
 use command::Command;
+use common::in_input;
+use interrupt::uninterrupted;
+use progress::Progress;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write as _};
 use std::path::PathBuf;

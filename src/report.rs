@@ -27,18 +27,8 @@ mod style;
 mod summary_figure;
 mod thesis_figures;
 mod transfer_figure;
+mod vocabulary;
 mod wind_figures;
-
-// the vocabulary of every figure
-use axis::Axis;
-use drawing::{Drawing, titled};
-use font::text_width;
-use legend::{Entry, distinct, entries, index_of, labels_of};
-use panel::{Note, Panel, Series};
-use scene::{Area, Px, Scene};
-use style::{
-    BLACK, COLOURS, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour,
-};
 
 pub(crate) use axes_sketch::axes_sketch;
 pub(crate) use bridge_figures::{

@@ -12,7 +12,7 @@ mod text;
 
 pub(crate) use files::read;
 
-use super::{Answer, Progress};
+use super::vocabulary::{Answer, Progress};
 use crate::error::Result;
 
 /// Flutter of whole bridges, their modes, and modes of finite-element programs

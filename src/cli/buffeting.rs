@@ -1,8 +1,9 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed, and the page of it.
 
 use super::report::folder::today;
+use super::vocabulary::{Answer, OutputDir, Progress, TextTable};
 use super::wind::WindArgs;
-use super::{Answer, OutputDir, Progress, TextTable, figures, headline};
+use super::{figures, headline};
 use crate::buffeting::peak_factor;
 use crate::error::{Error, Result, counted};
 use crate::files::report_block::ReportBlock;

@@ -2,7 +2,7 @@
 
 mod virtual_campaign;
 
-use super::{Answer, Progress};
+use super::vocabulary::{Answer, Progress};
 use crate::cli::text::to_tenths_of_mm;
 use crate::error::{Result, counted};
 use crate::section::Dof;

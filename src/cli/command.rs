@@ -1,8 +1,9 @@
 //! Every command with its arguments.
 
+use super::vocabulary::StudyArgs;
 use super::{
-    StudyArgs, bridge, campaign, compare, coverage, derivatives, fmu, monte_carlo, new, process,
-    select, simulate, ssp, wind,
+    bridge, campaign, compare, coverage, derivatives, fmu, monte_carlo, new, process, select,
+    simulate, ssp, wind,
 };
 use clap::Subcommand;
 use clap_complete::Shell;

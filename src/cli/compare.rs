@@ -5,7 +5,7 @@ mod decks;
 mod models;
 mod signals;
 
-use super::{Answer, Progress};
+use super::vocabulary::{Answer, Progress};
 use crate::comparison::forces::THESIS_DECKS;
 use crate::error::Result;
 use crate::report::PageSection;

@@ -1,6 +1,6 @@
 //! `aerodeck coverage`: are the intervals reliable?
 
-use super::{Answer, Progress, TextTable, spelt};
+use super::vocabulary::{Answer, Progress, TextTable, spelt};
 use crate::error::Result;
 use crate::uncertainty::{
     CoveragePlan, CoverageReport, FamilyPlan, FamilyReport, RangeCount, Truth, coverage,

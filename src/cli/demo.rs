@@ -1,7 +1,7 @@
 //! `aerodeck demo`: the whole chain on an embedded measured deck.
 
 use super::study::run_chain;
-use super::{Answer, OutputDir, Progress};
+use super::vocabulary::{Answer, OutputDir, Progress};
 use crate::error::Result;
 use crate::study::{Study, demo_study_text};
 use std::path::Path;

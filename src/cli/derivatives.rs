@@ -1,6 +1,7 @@
 //! `aerodeck derivatives`: tables of derivatives, shown and converted between notations.
 
-use super::{Answer, OutputDir, figures, folder_of};
+use super::figures;
+use super::vocabulary::{Answer, OutputDir, folder_of};
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedDerivative, ExpressedPoint, ExpressedTable, Notation,
     StatedConvention,

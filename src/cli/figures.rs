@@ -1,6 +1,6 @@
 //! Figures of results: an SVG each, a PNG beside it with `--png`, nothing with `--no-figures`.
 
-use super::OutputDir;
+use super::vocabulary::OutputDir;
 use crate::error::{Result, ensure};
 use crate::report::Figure;
 use std::sync::atomic::{AtomicBool, Ordering};

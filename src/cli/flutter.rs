@@ -1,8 +1,7 @@
 //! `aerodeck flutter`: curves and onsets of the trained models of a study.
 
-use super::{
-    Answer, OutputDir, Progress, StudyArgs, headline, result_files, routes, select, stages, text,
-};
+use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
+use super::{headline, result_files, routes, select, stages, text};
 use crate::error::Result;
 use crate::flutter::OnsetMethod;
 use crate::study::{

@@ -3,7 +3,7 @@
 mod export;
 mod replay;
 
-use super::{Answer, Progress};
+use super::vocabulary::{Answer, Progress};
 use crate::error::Result;
 use crate::fmu::importer::{CheckReport, Fmu};
 use std::fmt::Write as _;

@@ -1,6 +1,6 @@
 //! What stands around the verdict of a study: the onset it is about, and how the other models compare.
 
-use super::speed_or;
+use super::vocabulary::speed_or;
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetMethod};
 use crate::signal::extremes;

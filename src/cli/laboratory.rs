@@ -1,7 +1,7 @@
 //! The laboratory's report of `process`, printed and as a page: what was found odd, every run, the derivatives with their errors, the
 //! stages of each run.
 
-use super::OutputDir;
+use super::vocabulary::OutputDir;
 use crate::aerodynamics::derivatives::Derivative;
 use crate::error::counted;
 use crate::files::text::file_name;

@@ -1,6 +1,6 @@
 //! One run at a time in a folder of results.
 
-use super::{Temporary, uninterrupted};
+use super::interrupt::{Temporary, uninterrupted};
 use crate::error::{Error, Result};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read as _, Write as _};

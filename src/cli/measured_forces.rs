@@ -1,6 +1,7 @@
 //! Forces of records beside those that the exported model predicts for the measured motion.
 
-use super::{OutputDir, figures};
+use super::figures;
+use super::vocabulary::OutputDir;
 use crate::error::Result;
 use crate::flutter::CriticalPoint;
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};

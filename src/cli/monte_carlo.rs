@@ -1,6 +1,7 @@
 //! `aerodeck monte-carlo`: the distribution of the onset when section and forces are random.
 
-use super::{Answer, OutputDir, Progress, figures, folder_of, stages};
+use super::vocabulary::{Answer, OutputDir, Progress, folder_of};
+use super::{figures, stages};
 use crate::error::{Result, counted, ensure};
 use crate::files::text::read_text;
 use crate::plausibility::Finding;

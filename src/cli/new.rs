@@ -1,6 +1,6 @@
 //! `aerodeck new`: a commented study to begin with.
 
-use super::{Answer, OutputDir, Written, folder_of, list};
+use super::vocabulary::{Answer, OutputDir, Written, folder_of, list};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation, StatedConvention};
 use crate::error::{Error, Result};
 use crate::files::derivatives::{is_table_file, named_sheet};

@@ -1,8 +1,9 @@
 //! Files of a command: written aside first, put in place together, nothing left behind however the command ends.
 
+use super::answer::Answer;
+use super::interrupt::{Temporary, uninterrupted};
 use super::lock::{LOCK_FILE, lock};
 use super::wrapping::COLUMNS;
-use super::{Answer, Temporary, uninterrupted};
 use crate::error::{Error, Result};
 use crate::json;
 use crate::wind_tunnel::{Record, write_record};

@@ -1,6 +1,7 @@
 //! `aerodeck plot`: columns of a CSV file of results over one of them.
 
-use super::{Answer, OutputDir, figures, folder_of};
+use super::figures;
+use super::vocabulary::{Answer, OutputDir, folder_of};
 use crate::error::{Error, Result};
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use std::path::Path;

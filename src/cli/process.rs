@@ -1,9 +1,10 @@
 //! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
 
+use super::figures;
 use super::laboratory::{laboratory_page, processing_text};
 use super::result_files::{lines_of, over_v_hat};
 use super::stages::RECORDS;
-use super::{Answer, OutputDir, Progress, figures};
+use super::vocabulary::{Answer, OutputDir, Progress};
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{Derivative, TableHeader};
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};

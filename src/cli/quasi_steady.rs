@@ -1,7 +1,8 @@
 //! `aerodeck quasi-steady`: equilibrium, linear model, onset and a nonlinear run from static coefficients.
 
+use super::vocabulary::{Answer, OutputDir, Progress, TextTable, motion_columns};
 use super::wind::WindArgs;
-use super::{Answer, OutputDir, Progress, TextTable, figures, headline, motion_columns, text};
+use super::{figures, headline, text};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
 use crate::error::{Error, Result, counted};

@@ -7,12 +7,13 @@ mod printed;
 mod variables;
 
 use super::bridge::files::BRIDGE_FMU;
+use super::buffeting;
 use super::headline::own_onset;
 use super::measured_forces::FORCES;
 use super::result_files::{CURVES, DERIVATIVES, FIGURE, RESPONSE, ROOTS};
 use super::stages::{FMU_FILE, MODEL_FILE};
 use super::summary::Summary;
-use super::{Answer, OutputDir, buffeting, list};
+use super::vocabulary::{Answer, OutputDir, list};
 use crate::error::{Error, Result};
 use crate::files::text::read_text;
 use crate::fmu::importer::Fmu;

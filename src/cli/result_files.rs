@@ -1,8 +1,9 @@
 //! What stands behind the answer of a study: measured derivatives beside the models, curves as numbers, the motion below, at
 //! and above the onset.
 
+use super::figures;
 use super::simulate::{motion_panels, simulated};
-use super::{OutputDir, figures};
+use super::vocabulary::OutputDir;
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::{Error, Result};

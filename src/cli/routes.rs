@@ -1,7 +1,7 @@
 //! The table of all routes and the onset cards, in words.
 
 use super::text::interval;
-use super::{TextTable, speed_or};
+use super::vocabulary::{TextTable, speed_or};
 use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
 use crate::section::Dof;
 use crate::study::{Route, RouteTable};

@@ -1,6 +1,6 @@
 //! `--json-schema`: the JSON Schema of what `--json` prints.
 
-use super::Answer;
+use super::vocabulary::Answer;
 use crate::error::{Error, Result};
 
 macro_rules! schemas {

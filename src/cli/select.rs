@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::{Answer, OutputDir, Progress, StudyArgs, Written, list};
+use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs, Written, list};
 use crate::error::{Error, Result, ensure};
 use crate::flutter::FlutterSearch;
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};

@@ -1,6 +1,7 @@
 //! `aerodeck simulate`: a released section in steady wind, in this process.
 
-use super::{Answer, OutputDir, figures, folder_of, list, motion_columns, stages, warn};
+use super::vocabulary::{Answer, OutputDir, folder_of, list, motion_columns, warn};
+use super::{figures, stages};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, counted, ensure, non_negative, positive};
 use crate::flutter::aliased_below;

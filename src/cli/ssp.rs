@@ -1,6 +1,7 @@
 //! `aerodeck ssp`: a bridge as a system of FMUs.
 
-use super::{Answer, Progress, bridge, headline, stages};
+use super::vocabulary::{Answer, Progress};
+use super::{bridge, headline, stages};
 use crate::error::{Result, counted};
 use crate::fmu::package::{Label, Runtime, write_archive};
 use crate::study::bridge::BridgeExportOptions;

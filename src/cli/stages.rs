@@ -1,7 +1,8 @@
 //! The stages of a study with their files: what `study` runs through and each command does alone.
 
+use super::figures;
 use super::report::folder::digest;
-use super::{OutputDir, Progress, figures};
+use super::vocabulary::{OutputDir, Progress};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, ensure};

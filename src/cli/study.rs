@@ -2,9 +2,10 @@
 
 use super::report::folder::{REPORT, SUMMARY, today};
 use super::summary::{FitSummary, Summary};
+use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
 use super::{
-    Answer, OutputDir, Progress, StudyArgs, buffeting, figures, headline, measured_forces, report,
-    result_files, select, stages, study_run, text,
+    buffeting, figures, headline, measured_forces, report, result_files, select, stages, study_run,
+    text,
 };
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};

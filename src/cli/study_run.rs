@@ -1,6 +1,6 @@
 //! The study that was run, left with its results: a folder of results can be run again by itself.
 
-use super::OutputDir;
+use super::vocabulary::OutputDir;
 use crate::error::{Error, Result};
 use crate::files::derivatives::{file_and_sheet, is_table_file, named_sheet};
 use crate::study::Study;

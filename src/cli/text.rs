@@ -1,8 +1,9 @@
 //! Results in words and tables, for people.
 
+use super::headline;
 use super::study_run::BESIDE;
 use super::summary::Summary;
-use super::{TextTable, Written, headline, list, speed_or};
+use super::vocabulary::{TextTable, Written, list, speed_or};
 use crate::error::counted;
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};

@@ -1,7 +1,8 @@
 //! `aerodeck thesis`: the headline of the source document, repeated, with a page of its figures and tables that can be computed, its
 //! numbers beside ours.
 
-use super::{Answer, OutputDir, Progress, Temporary, headline, list, result_files, stages, text};
+use super::vocabulary::{Answer, OutputDir, Progress, Temporary, list};
+use super::{headline, result_files, stages, text};
 use crate::aerodynamics::laguerre::discrete_memory;
 use crate::cli::compare::thesis_comparisons;
 use crate::cli::laboratory::svg;

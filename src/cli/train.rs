@@ -1,6 +1,7 @@
 //! `aerodeck train`: the models of a study from its records and tables.
 
-use super::{Answer, OutputDir, Progress, StudyArgs, select, stages, text};
+use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
+use super::{select, stages, text};
 use crate::error::Result;
 use crate::fmu::package::growth_of;
 use crate::study::{Deck, ModelGrowth, RecordSet, attempt};

@@ -1,6 +1,7 @@
 //! `aerodeck tunnel`: records of the virtual wind tunnel.
 
-use super::{Answer, OutputDir, Progress, StudyArgs, stages};
+use super::stages;
+use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
 use crate::error::Result;
 use crate::study::Deck;
 use std::fmt::Write as _;

@@ -1,6 +1,6 @@
 //! `aerodeck validate`: the reference cases, expected against found.
 
-use super::{Answer, Progress};
+use super::vocabulary::{Answer, Progress};
 use crate::error::Result;
 use crate::reference::{CaseResult, UserCase, run as run_case, run_all, validation_table};
 use std::fmt::Write as _;

@@ -1,6 +1,6 @@
 //! What the commands on a wind file have in common.
 
-use super::{OutputDir, folder_of, warn};
+use super::vocabulary::{OutputDir, folder_of, warn};
 use crate::error::Result;
 use crate::plausibility::sentences;
 use crate::study::{WindStudy, example_wind_study_text};

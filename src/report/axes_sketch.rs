@@ -1,6 +1,6 @@
 //! Sketch of the axes: heave up (this program, PoliMi) beside heave down (classical, Küssner/Starossek).
 
-use super::{BLACK, COLOURS, Figure, GREY, Ink, Px, Scene};
+use super::vocabulary::{BLACK, COLOURS, Figure, GREY, Ink, Px, Scene};
 use crate::aerodynamics::derivatives::notation::Axes;
 
 /// Width and height of one panel, px.

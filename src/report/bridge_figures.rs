@@ -1,7 +1,7 @@
 //! Modes of a bridge, their frequencies and damping over wind speed, and the motion at flutter.
 
 use super::flutter_figures::root_locus;
-use super::{
+use super::vocabulary::{
     Axis, COLOURS, Drawing, Entry, Figure, GREY, Ink, PALE_GREY, Panel, Shape, dash,
     outcome_colour, titled,
 };

@@ -1,6 +1,6 @@
 //! Aerodynamic derivatives over the reduced velocity: measured points and fitted lines.
 
-use super::{
+use super::vocabulary::{
     Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Panel, PlottedSeries, Shape, colour, dash,
     entries, labels_of, titled,
 };

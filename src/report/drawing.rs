@@ -1,9 +1,13 @@
 //! Panels in a grid with a title above and a legend below, put together into one figure.
 
 use super::axis::ends;
+use super::font::text_width;
+use super::legend::Entry;
 use super::legend::{LegendLayout, lay_out, shortened};
+use super::panel::Panel;
 use super::panel::{LABEL_SIZE, ROOM_BELOW};
-use super::{Area, BLACK, Entry, Figure, Panel, Px, Scene, text_width};
+use super::scene::{Area, Figure, Px, Scene};
+use super::style::BLACK;
 use crate::error::{Error, Result};
 
 const TITLE_SIZE: u32 = 14;

@@ -2,7 +2,7 @@
 
 use super::axis::significant;
 use super::style::pale;
-use super::{
+use super::vocabulary::{
     Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Note, PALE_GREY, Panel, Shape, branch_width,
     colour, dash, distinct, index_of, outcome_colour,
 };

@@ -2,7 +2,7 @@
 
 use super::axis::ends;
 use super::legend::shortened;
-use super::{Area, BLACK, Figure, GREY, Ink, Px, Scene};
+use super::vocabulary::{Area, BLACK, Figure, GREY, Ink, Px, Scene};
 use crate::error::{Error, Result, ensure};
 
 /// Stops of a colour scale that rises evenly in lightness and is read by colour-blind readers (viridis, CC0).

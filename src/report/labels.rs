@@ -1,6 +1,7 @@
 //! Where the labels of points go, so that they cover neither each other nor the curves.
 
-use super::{Area, Px, text_width};
+use super::font::text_width;
+use super::scene::{Area, Px};
 
 /// Places for one label after the other.
 #[derive(Debug)]

@@ -1,6 +1,8 @@
 //! Points with a name, and the legend below the panels: rows of samples and names, never over a curve.
 
-use super::{BLACK, Ink, Px, Scene, text_width};
+use super::font::text_width;
+use super::scene::{Px, Scene};
+use super::style::{BLACK, Ink};
 use crate::error::Result;
 
 const SIZE: u32 = 11;

@@ -1,6 +1,6 @@
 //! The verdict at the head of a page, what stands at the edges of a printed one, and the list of what is in it.
 
-use super::outcome_colour;
+use super::vocabulary::outcome_colour;
 use crate::error::{Error, Result};
 use crate::files::report_block::ReportBlock;
 use crate::verdict::{Doubt, Outcome, Severity, Verdict};

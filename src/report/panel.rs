@@ -1,9 +1,13 @@
 //! One pair of axes with curves, markers, shaded regions and labelled points.
 
+use super::axis::Axis;
 use super::axis::Scale;
+use super::font::text_width;
 use super::labels::Labels;
+use super::legend::{PlottedSeries, index_of};
+use super::scene::{Area, Px, Scene};
+use super::style::{BLACK, Ink};
 use super::style::{GRID, SHADE, SHADE_OPACITY};
-use super::{Area, Axis, BLACK, Ink, PlottedSeries, Px, Scene, index_of, text_width};
 use crate::error::{Error, Result, ensure};
 
 pub(super) const TICK_SIZE: u32 = 11;

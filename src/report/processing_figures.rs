@@ -1,6 +1,6 @@
 //! The stages of processing of one run, one below the other: the whole run, and a few periods of it.
 
-use super::{Axis, BLACK, Drawing, Entry, Figure, Ink, Panel, Series, colour};
+use super::vocabulary::{Axis, BLACK, Drawing, Entry, Figure, Ink, Panel, Series, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::processing::{RunReport, SectionSignals, StageLevels};

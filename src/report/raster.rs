@@ -1,7 +1,7 @@
 //! Figures as PNG images, drawn with the bundled font: they look the same on every machine.
 
-use super::Figure;
 use super::font::FONT;
+use super::vocabulary::Figure;
 use crate::error::{Error, Result};
 use resvg::usvg::fontdb;
 use resvg::{tiny_skia, usvg};

@@ -1,7 +1,7 @@
 //! Distribution of the onset speed of random sections.
 
 use super::axis::significant;
-use super::{Axis, BLACK, Drawing, Entry, Figure, Ink, Note, Panel, Shape, colour};
+use super::vocabulary::{Axis, BLACK, Drawing, Entry, Figure, Ink, Note, Panel, Shape, colour};
 use crate::error::{Error, Result};
 use crate::uncertainty::monte_carlo::MonteCarloResult;
 

@@ -1,6 +1,6 @@
 //! Rows of points in panels: over time, metrics of goodness of fit over the frequency, and what something costs over its size.
 
-use super::{
+use super::vocabulary::{
     Axis, COLOURS, Drawing, Figure, Ink, Panel, PlottedSeries, Shape, colour, dash, entries,
     labels_of, titled,
 };

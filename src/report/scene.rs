@@ -1,7 +1,7 @@
 //! What a figure is drawn on: places and rectangles, in px from the upper left corner, elements of SVG, and the finished figure.
 
 use super::font::FAMILIES;
-use super::{BLACK, Ink, Shape};
+use super::style::{BLACK, Ink, Shape};
 use crate::error::{Error, Result};
 use quick_xml::escape::escape;
 use std::fmt::{Display, Write as _};

@@ -1,7 +1,9 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
+use super::axes_sketch::axes_sketch;
 use super::page_head::{at_edges, capital, class, doubts, required_colour, stated};
-use super::{COLOURS, PageSection, axes_sketch, branch_width, dash};
+use super::sections_page::PageSection;
+use super::vocabulary::{COLOURS, branch_width, dash};
 use crate::files::report_block::ReportBlock;
 use crate::identification::{EntryReport, FitReport};
 use crate::units::ReducedFrequency;

@@ -2,7 +2,9 @@
 
 use super::page_head::required_colour;
 use super::study_page::{PageCurve, StudyPage};
-use super::{Axis, BLACK, COLOURS, Drawing, Entry, Figure, Ink, PALE_GREY, Panel, dash};
+use super::vocabulary::{
+    Axis, BLACK, COLOURS, Drawing, Entry, Figure, Ink, PALE_GREY, Panel, dash,
+};
 use crate::error::Result;
 use crate::flutter::ModeBranch;
 

@@ -1,7 +1,8 @@
 //! Figures 2.1 to 2.11 and 3.10 of the thesis: Laguerre functions and their gain, and the first-order example.
 
+use super::response_figures::{TimePanel, time_history_figure};
 use super::transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
-use super::{Figure, PlottedSeries, TimePanel, time_history_figure};
+use super::vocabulary::{Figure, PlottedSeries};
 use crate::error::Result;
 use crate::reference::{
     ALPHA, ALPHA_OF_ORDERS, FILTERS, FirstOrderResults, Lines, STEP_S, SampledTransfer,

@@ -1,6 +1,6 @@
 //! Transfer functions over frequency: magnitude and phase, models against a reference with its tolerance bands.
 
-use super::{
+use super::vocabulary::{
     Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Panel, Shape, distinct, entries, index_of,
     titled,
 };

@@ -1,6 +1,6 @@
 //! Static equilibria, and the response to turbulence: spectra, root mean squares, and envelopes along the span of a bridge.
 
-use super::{Axis, BLACK, Drawing, Entry, Figure, Ink, Panel, Shape, entries};
+use super::vocabulary::{Axis, BLACK, Drawing, Entry, Figure, Ink, Panel, Shape, entries};
 use crate::aeroelastic::EquilibriumPath;
 use crate::buffeting::{BuffetingResponse, SpectrumCurve};
 use crate::error::Result;

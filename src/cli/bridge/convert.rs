@@ -2,7 +2,7 @@
 
 use super::summary::named;
 use crate::bridge::BridgeMode;
-use crate::cli::{Answer, warn};
+use crate::cli::vocabulary::{Answer, warn};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::{BridgeFile, BridgeModes, ModesFormat, write_modes};
 use crate::plausibility::{Finding, FindingSeverity, sentences};

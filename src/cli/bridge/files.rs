@@ -1,6 +1,6 @@
 //! A bridge file on the command line, and the files that commands of a bridge leave and its page takes up.
 
-use crate::cli::{OutputDir, Progress, folder_of, warn};
+use crate::cli::vocabulary::{OutputDir, Progress, folder_of, warn};
 use crate::error::Result;
 use crate::files::bridge::BridgeFile;
 use crate::files::text::read_text;

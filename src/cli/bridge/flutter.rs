@@ -6,11 +6,12 @@ use super::files::{
 };
 use super::summary::{BridgeSummary, leave_inputs};
 use super::text;
+use crate::cli::figures;
 use crate::cli::report::folder::{REPORT, SUMMARY, is_of_a_study};
 use crate::cli::report::{self, page_of};
 use crate::cli::result_files::{beside_models, curves_csv, over_v_hat};
 use crate::cli::text::ending;
-use crate::cli::{Answer, OutputDir, Progress, figures};
+use crate::cli::vocabulary::{Answer, OutputDir, Progress};
 use crate::error::Result;
 use crate::files::text::csv_cell;
 use crate::flutter::{BridgeMotion, ModePoint, NodeMotion};

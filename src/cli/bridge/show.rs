@@ -2,7 +2,8 @@
 
 use super::files::BridgeArgs;
 use crate::bridge::BridgeMode;
-use crate::cli::{Answer, Progress, TextTable, figures};
+use crate::cli::figures;
+use crate::cli::vocabulary::{Answer, Progress, TextTable};
 use crate::error::{Result, counted};
 use crate::report::modes_figure;
 use std::fmt::Write as _;

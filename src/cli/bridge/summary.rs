@@ -1,8 +1,8 @@
 //! `summary.json` of a bridge, and copies of the files that it was computed from.
 
 use super::text::beside_the_onset;
-use crate::cli::OutputDir;
 use crate::cli::report::folder::{digest, today};
+use crate::cli::vocabulary::OutputDir;
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, ModesFormat};
 use crate::files::derivatives::{file_and_sheet, is_table_file};

@@ -1,7 +1,8 @@
 //! The onset card of a bridge, in words.
 
+use crate::cli::headline;
 use crate::cli::text::{figures, of_onsets};
-use crate::cli::{headline, speed_or};
+use crate::cli::vocabulary::speed_or;
 use crate::error::counted;
 use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy, NAMED_SHARE};

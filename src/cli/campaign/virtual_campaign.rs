@@ -1,7 +1,7 @@
 //! `aerodeck campaign virtual`: a raw campaign with a known truth.
 
 use crate::aerodynamics::{FlatPlate, RationalModel};
-use crate::cli::{Answer, OutputDir, Progress, spelt};
+use crate::cli::vocabulary::{Answer, OutputDir, Progress, spelt};
 use crate::error::{Error, Result};
 use crate::files::derivatives::named_table;
 use crate::section::Dof;

@@ -1,6 +1,6 @@
 //! What the comparisons of the thesis share: arguments, tables, figures of metrics, the section of a page.
 
-use crate::cli::TextTable;
+use crate::cli::vocabulary::TextTable;
 use crate::comparison::forces::{
     CompareOptions, ForceMetrics, Score, ScoreSummary, Scoring, Statement,
 };

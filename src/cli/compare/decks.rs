@@ -2,7 +2,7 @@
 
 use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
 use crate::cli::figures as drawn;
-use crate::cli::{Answer, OutputDir, Progress};
+use crate::cli::vocabulary::{Answer, OutputDir, Progress};
 use crate::comparison::forces::{
     CompareOptions, DecksComparison, Score, compare_decks, score_table,
 };

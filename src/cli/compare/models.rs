@@ -1,7 +1,8 @@
 //! `aerodeck compare models`: Laguerre models against rational functions on one girder.
 
 use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
-use crate::cli::{Answer, OutputDir, Progress, figures};
+use crate::cli::figures;
+use crate::cli::vocabulary::{Answer, OutputDir, Progress};
 use crate::comparison::forces::{
     CompareOptions, History, ModelsComparison, Score, compare_models, in_magnitude_band,
     in_phase_band, score_table,

@@ -1,6 +1,6 @@
 //! `aerodeck compare signals`: all metrics of two time histories of any laboratory file.
 
-use crate::cli::{Answer, Progress};
+use crate::cli::vocabulary::{Answer, Progress};
 use crate::comparison::{
     BicoherenceParameters, Metric, PhaseParameters, SignalPair, StationarityParameters,
     WaveletParameters, bicoherence, magnitude, magnitude_warped, peak, phase, probability_density,

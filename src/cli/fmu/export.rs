@@ -3,7 +3,8 @@
 mod bridge;
 
 use crate::aerodynamics::RationalAdmittance;
-use crate::cli::{Answer, Progress, headline, in_input, spelt, stages, text, warn};
+use crate::cli::vocabulary::{Answer, Progress, in_input, spelt, warn};
+use crate::cli::{headline, stages, text};
 use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::gust_force;
 use crate::flutter::OnsetSearch;

@@ -1,6 +1,6 @@
 //! A selection in words and figures.
 
-use crate::cli::TextTable;
+use crate::cli::vocabulary::TextTable;
 use crate::error::{Result, counted};
 use crate::report::{Figure, HeatMap, heat_map_figure};
 use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};

@@ -2,7 +2,8 @@
 
 use super::{ExportKind, FmuExportArgs, none_of};
 use crate::cli::bridge::{self, files::BRIDGE_FMU};
-use crate::cli::{Answer, Progress, headline, stages, warn};
+use crate::cli::vocabulary::{Answer, Progress, warn};
+use crate::cli::{headline, stages};
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
 use crate::fmu::package::{Export, Label};
