@@ -10,8 +10,8 @@ pub use aerodeck_fmu_host as importer;
 use aerodeck_fmu_host::xml;
 pub use aerodeck_unit::{
     bridge_gusts, bridge_options, fmi2, fmi3, force_options, groups, identity, instance, lifecycle,
-    location, log_categories, onset_bounds, onset_start, refusal, resources, si, standard,
-    variables,
+    location, log_categories, onset_bounds, onset_start, prescribed, refusal, resources, si,
+    standard, variables,
 };
 
 // the vocabulary of descriptions and archives

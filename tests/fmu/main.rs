@@ -17,6 +17,7 @@ mod three_dof;
 #[path = "../common/trained.rs"]
 mod trained;
 
+mod beside_a_structure;
 mod bridge;
 mod calculated_onset;
 mod dampers;

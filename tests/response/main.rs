@@ -3,7 +3,6 @@
 #[path = "../common/steppers.rs"]
 mod steppers;
 
-mod beside_a_structure;
 mod changing_wind;
 mod quasi_steady;
 mod stepping;

@@ -11,19 +11,17 @@ mod lanes;
 mod linked;
 mod matrix_polynomial;
 mod packed;
-mod prescribed;
 mod quasi_steady;
 mod rates;
 mod sampled;
 mod sampling;
 mod series;
 mod step_cache;
-mod strip_gusts;
 mod values;
 
-pub use prescribed::{Airflow, ForceAhead, KnownMotion, PrescribedForces, StripFlow};
+pub use lanes::LANES;
+pub use linked::Sparse;
 pub use quasi_steady::{NonlinearRun, NonlinearSection, largest_difference};
-pub use strip_gusts::StripGusts;
 pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
 
 use crate::aerodynamics::{GustForce, RationalAdmittance, Realization};

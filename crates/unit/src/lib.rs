@@ -1,6 +1,6 @@
 //! The coupled section, its forces alone, or a whole bridge as a co-simulation slave: what an FMU holds. Variables ([`variables`]),
-//! version-neutral life cycle ([`instance`], [`lifecycle`]), what is read at instantiation ([`resources`]), and the C interfaces of
-//! FMI 2.0 and 3.0 ([`fmi2`], [`fmi3`]).
+//! version-neutral life cycle ([`instance`], [`lifecycle`]), what is read at instantiation ([`resources`]), forces on strips
+//! whose motion is prescribed ([`prescribed`]), and the C interfaces of FMI 2.0 and 3.0 ([`fmi2`], [`fmi3`]).
 //!
 //! `aerodeck-runtime` makes the shared library of an FMU of it.
 #![deny(unsafe_code)]
@@ -27,6 +27,7 @@ pub mod location;
 pub mod log_categories;
 pub mod onset_bounds;
 pub mod onset_start;
+pub mod prescribed;
 pub mod refusal;
 pub mod resources;
 pub mod si;

@@ -5,7 +5,7 @@ use pulp::NullaryFnOnce;
 use pulp::{Scalar256b, Simd, f64x4, m64x4};
 
 /// Numbers in a vector. Rows are padded to whole groups of this many, so that the inner loop has a fixed length.
-pub(super) const LANES: usize = 4;
+pub const LANES: usize = 4;
 
 /// Vectors of four numbers, of this processor or made of single ones.
 pub(super) trait FourLanes: Simd<f64s = f64x4, m64s = m64x4> {}

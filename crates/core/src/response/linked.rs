@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 /// A matrix of which most entries are zero, row by row.
 #[derive(Debug, Clone)]
-pub(super) struct Sparse {
+pub struct Sparse {
     /// Where the entries of each row end.
     ends: Vec<usize>,
     /// Column and entry.
@@ -14,7 +14,8 @@ pub(super) struct Sparse {
 }
 
 impl Sparse {
-    pub(super) fn new(m: &DMatrix<f64>) -> Self {
+    /// The entries of a matrix that are not zero.
+    pub fn new(m: &DMatrix<f64>) -> Self {
         let (mut ends, mut entries) = (Vec::with_capacity(m.nrows()), Vec::new());
         for row in m.row_iter() {
             let filled = row.iter().enumerate().filter(|(_, x)| **x != 0.0);
@@ -39,14 +40,14 @@ impl Sparse {
 
     /// `Y = W V` for as many vectors as there are lanes.
     #[inline(always)]
-    pub(super) fn set_lanes(&self, v: &[[f64; LANES]], y: &mut [[f64; LANES]]) {
+    pub fn set_lanes(&self, v: &[[f64; LANES]], y: &mut [[f64; LANES]]) {
         y.fill([0.0; LANES]);
         self.add_lanes(v, y);
     }
 
     /// `Y += W V`.
     #[inline(always)]
-    pub(super) fn add_lanes(&self, v: &[[f64; LANES]], y: &mut [[f64; LANES]]) {
+    pub fn add_lanes(&self, v: &[[f64; LANES]], y: &mut [[f64; LANES]]) {
         let mut from = 0;
         for (y, end) in y.iter_mut().zip(&self.ends) {
             let mut sums = *y;

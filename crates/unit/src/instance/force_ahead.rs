@@ -4,7 +4,8 @@ use super::force_parts::StripsUnderModel;
 use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET_AS_DERIVATIVE};
 use super::memory::Memory;
 use crate::error::{Error, Result};
-use crate::response::{ForceAhead, KnownMotion, PrescribedForces, SectionState, StripFlow};
+use crate::prescribed::{ForceAhead, KnownMotion, PrescribedForces, StripFlow};
+use crate::response::SectionState;
 use std::ops::Range;
 
 impl ForceUnit {

@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::Realizable;
 use crate::force_options::StripsOfModel;
-use crate::response::{PrescribedForces, StripGusts};
+use crate::prescribed::{PrescribedForces, StripGusts};
 use crate::section::Dof;
 use std::ops::Range;
 

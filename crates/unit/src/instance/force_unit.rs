@@ -11,9 +11,10 @@ use super::unit::{Prepared, Unit};
 use crate::error::Result;
 use crate::force_options::StripsOfModel;
 use crate::lifecycle::State;
+use crate::prescribed::{ForceAhead, KnownMotion, StripFlow};
 use crate::refusal::CallResult;
 use crate::resources::Resources;
-use crate::response::{ForceAhead, KnownMotion, SectionState, StripFlow};
+use crate::response::SectionState;
 use crate::variables::{
     ComputedNumber, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState, VariableTable,
     strip_states,

@@ -7,8 +7,7 @@ use super::StripFlow;
 use super::course::{COEFFICIENTS, MotionCubic};
 use crate::aerodynamics::{DiscreteRealization, Realization};
 use crate::error::{Error, Result};
-use crate::response::lanes::LANES;
-use crate::response::linked::Sparse;
+use crate::response::{LANES, Sparse};
 use nalgebra::DMatrix;
 
 /// Largest product of time and size of the filter matrix in one Taylor series: eighteen terms reach the last digit.
@@ -311,7 +310,7 @@ fn shift(courses: &[Lanes], dofs: usize, [start, length]: [Lanes; 2], shifted: &
     }
 }
 
-crate::vectorised! {
+aerodeck_core::vectorised! {
     /// A part of a series: a closure would not always be compiled for each set of vectors.
     fn add_terms<'a>(to: &'a mut FilterSeries, from: [Lanes; 2], x: Lanes) -> () {
         to.part(from, x);

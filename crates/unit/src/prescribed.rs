@@ -11,13 +11,15 @@
 mod course;
 mod filters;
 mod flow;
+mod gusts;
 mod instant;
 
 pub use flow::{Airflow, StripFlow};
+pub use gusts::StripGusts;
 
-use super::lanes::LANES;
 use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
+use crate::response::LANES;
 use crate::section::Dof;
 use course::{COEFFICIENTS, MotionCubic, NUMBERS, POINTS};
 use filters::{FilterAdvance, FilterSeries, StripLanes};

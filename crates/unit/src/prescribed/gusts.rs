@@ -1,6 +1,6 @@
 //! Gusts on strips whose motion is prescribed: their lags go on exactly from one point of time to the next.
 
-use super::prescribed::{Airflow, ForceAhead};
+use super::{Airflow, ForceAhead};
 use crate::aerodynamics::GustForce;
 use crate::section::Dof;
 

@@ -3,8 +3,8 @@
 use aerodeck::aerodynamics::{RationalModel, Realizable, Realization};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
+use aerodeck::fmu::prescribed::{ForceAhead, KnownMotion, PrescribedForces, StripFlow};
 use aerodeck::identification::{FrequencyFit, fit_table};
-use aerodeck::response::{ForceAhead, KnownMotion, PrescribedForces, StripFlow};
 use aerodeck::section::{SectionModel, Structure, Translation};
 use nalgebra::{DMatrix, DVector};
 
