@@ -49,7 +49,7 @@ impl System {
     /// Its archive: the description, and units and parameter sets in `resources/`.
     ///
     /// # Errors
-    /// [`Error::Input`] for a number that is not finite, and for a connection between what is not there.
+    /// [`Error::Input`](crate::Error::Input) for a number that is not finite, and for a connection between what is not there.
     pub fn package(&self) -> Result<Vec<u8>> {
         for end in self.connections.iter().flat_map(|c| [&c.from, &c.to]) {
             let is_there = self.components.iter().any(|c| c.name == end[0]);
