@@ -42,13 +42,14 @@ fn listed(cli: &Command) -> String {
     text
 }
 
-/// The first sentence of a command's help.
+/// The commands of a group, by their names.
 fn commands<'a>(cli: &'a Command, names: &'a str) -> impl Iterator<Item = &'a Command> {
     names
         .split(' ')
         .filter_map(|name| cli.find_subcommand(name))
 }
 
+/// The first sentence of a command's help.
 fn purpose(command: &Command) -> String {
     command
         .get_about()

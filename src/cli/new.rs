@@ -126,8 +126,7 @@ fn file_name(path: &Path) -> Result<&OsStr> {
 }
 
 impl NewArgs {
-    /// Writes a file that needs no more than to be edited.
-    /// Of another file than a study: its usual name, its text, and what is to be done with it.
+    /// Of a file of another kind, which needs no more than to be edited: its usual name, its text, and what is to be done with it.
     fn template(&self) -> Option<[&'static str; 3]> {
         let all = [
             (

@@ -17,8 +17,10 @@ pub(crate) fn run(
         Some(name) => run_case(name),
         None if files.is_empty() => run_all(),
         None => {
-            let read = |file: &PathBuf| UserCase::read(file).map(|case| case.run());
-            Ok(files.iter().map(read).collect::<Result<Vec<_>>>()?.concat())
+            // all are read before the first is computed
+            let cases = files.iter().map(|file| UserCase::read(file));
+            let cases = cases.collect::<Result<Vec<_>>>()?;
+            Ok(cases.iter().flat_map(UserCase::run).collect())
         }
     })?;
     let passed = results.iter().all(|r| r.passed);

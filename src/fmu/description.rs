@@ -6,7 +6,7 @@
 use super::log_categories::LOG_CATEGORIES;
 use super::package::label::Label;
 use super::si::SiUnit;
-use super::{
+use super::vocabulary::{
     Causality, Dependency, DependencyKind, Element, FmiTerm, Listing, MODEL_IDENTIFIER, Resources,
     StartValue, Variable, VariableTable,
 };

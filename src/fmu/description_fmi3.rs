@@ -4,7 +4,7 @@ use super::description::{
     depending, described, experiment, log_categories, number, units, with_role, with_unit,
 };
 use super::package::label::Label;
-use super::{
+use super::vocabulary::{
     Causality, Dependency, Element, Groups, MAX_STRIPS, MODEL_IDENTIFIER, Resources, StartValue,
     Variable, VariableTable, array_of,
 };

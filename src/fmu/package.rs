@@ -22,10 +22,11 @@ pub use runtime::Runtime;
 pub(crate) use runtime::{COMPONENT, live_module};
 
 use super::description::model_description;
+use super::description_fmi3;
 use super::location::MODEL_FILE;
-use super::{
+use super::vocabulary::{
     BOUNDS_FILE, BRIDGE_FILE, BridgeOptions, Element, FORCE_FILE, ForceOptions, GUST_FILE, Listing,
-    OnsetBounds, OptionFiles, Resources, TURBULENCE_FILE, TurbulenceOptions, description_fmi3,
+    OnsetBounds, OptionFiles, Resources, TURBULENCE_FILE, TurbulenceOptions,
 };
 use crate::aerodynamics::GustForce;
 use crate::aeroelastic::CoupledSection;

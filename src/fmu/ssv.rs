@@ -1,7 +1,7 @@
 //! Sets of parameters: SSV of System Structure and Parameterization 1.0.
 
-use super::Element;
 use super::description::number;
+use super::vocabulary::Element;
 use crate::error::Result;
 
 const VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValues";

@@ -181,6 +181,49 @@ fn values_are_set_and_read_and_refused() {
     }
 }
 
+/// In FMI 3.0 elements of arrays are counted: what is beyond them is refused before the FMU is called.
+#[test]
+fn references_that_do_not_exist_are_refused_in_both_versions() {
+    let folder = tempfile::tempdir().unwrap();
+    for (version, words) in [
+        (FmiVersion::Two, "answered"),
+        (FmiVersion::Three, "a place below"),
+    ] {
+        let path = folder.path().join("refused.fmu");
+        let export = Export {
+            version,
+            allow_unstable: true,
+            ..Export::default()
+        };
+        let runtimes = [Runtime::embedded().unwrap()];
+        write_fmu(&path, &model("rational"), &runtimes, true, export).unwrap();
+        let fmu = Fmu::open(&path).unwrap();
+        let beyond = fmu.model_description().variables.len() as u32 + 7;
+        let released = || {
+            let mut slave = fmu.instantiate("refused").unwrap();
+            slave.setup(0.0, None, None).unwrap();
+            slave.enter_initialization().unwrap();
+            slave
+        };
+        let wind = fmu.model_description().variables.iter();
+        let wind = wind.clone().find(|v| v.name == "wind_speed").unwrap();
+        let wind = wind.value_reference;
+        let mut before = fmu.instantiate("refused").unwrap();
+        for refused in [
+            before.set_real(&[beyond], &[1.0]),
+            released().set_real(&[beyond], &[1.0]),
+            released().set_real(&[wind, u32::MAX], &[1.0, 1.0]),
+            released().get_real(&[wind, beyond]).map(drop),
+            released()
+                .directional_derivative(&[beyond], &[wind], &[1.0])
+                .map(drop),
+        ] {
+            let message = refused.unwrap_err().to_string();
+            assert!(message.contains(words), "{message}");
+        }
+    }
+}
+
 #[test]
 fn another_fingerprint_is_refused_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! The page that documents the FMU of a bridge, in its archive.
 
 use super::documentation::{GUSTS_ARE_INPUTS, gust_words, rows, sentences};
-use crate::fmu::{BridgeOptions, Element, Resources, Role, Variable};
+use crate::fmu::vocabulary::{BridgeOptions, Element, Resources, Role, Variable};
 use crate::verdict::Verdict;
 use std::fmt::Write as _;
 

@@ -6,7 +6,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::fmu::package::runtime::Runtime;
-use crate::fmu::{
+use crate::fmu::vocabulary::{
     Element, FmiVersion, ForceOptions, Resources, Role, SectionParameter, Variable, VariableTable,
     each_once,
 };

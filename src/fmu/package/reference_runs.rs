@@ -7,7 +7,7 @@ mod unit;
 use crate::error::Result;
 use crate::fmu::importer::{LS_REF, LS_REF_MANIFEST};
 use crate::fmu::ssv::parameter_set;
-use crate::fmu::{BOUNDS_FILE, Element, FmiVersion, Listing, OnsetBounds, Resources};
+use crate::fmu::vocabulary::{BOUNDS_FILE, Element, FmiVersion, Listing, OnsetBounds, Resources};
 use plan::PARAMETERS;
 use std::collections::BTreeMap;
 use unit::ReferenceUnit;

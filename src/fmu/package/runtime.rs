@@ -1,7 +1,7 @@
 //! Runtime binaries: the one embedded in this program, and others from a folder.
 
 use crate::error::{Error, Result, ensure};
-use crate::fmu::{FmiVersion, MODEL_IDENTIFIER};
+use crate::fmu::vocabulary::{FmiVersion, MODEL_IDENTIFIER};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;

@@ -2,7 +2,9 @@
 //! its motion and the force on it, and so is the wind.
 
 use crate::aerodynamics::GustComponent;
-use crate::fmu::{Causality, Element, FmiVersion, Response, Role, VariableTable, array_of};
+use crate::fmu::vocabulary::{
+    Causality, Element, FmiVersion, Response, Role, VariableTable, array_of,
+};
 use crate::section::Dof;
 use std::collections::BTreeSet;
 

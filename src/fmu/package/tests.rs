@@ -350,7 +350,7 @@ fn control_characters_stay_out_of_the_description() {
     let three = description_fmi3::model_description(&resources, &label).unwrap();
     let two = model_description(&resources, Listing::All, &label).unwrap();
     for text in [&two, &three] {
-        let root = crate::fmu::xml::Element::parse(text).unwrap();
+        let root = Element::parse(text).unwrap();
         assert_eq!(root.attribute("modelName"), Some("name"));
         assert_eq!(root.attribute("author"), Some("author"));
         assert!(!text.contains(|c: char| c.is_control() && c != '\n'));

@@ -86,7 +86,8 @@ exported! {
     };
 }
 
-/// What the numbers of a variable depend on, each by its element, the value reference of the other and its element: while initialising on what has been set for it, later on inputs and states at once.
+/// What the numbers of a variable depend on, each by its element, the value reference of the other and its element: while initialising on
+/// what has been set for it, later on inputs and states at once.
 fn dependencies(
     c: &mut Component,
     reference: u32,

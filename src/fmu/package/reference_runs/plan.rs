@@ -1,8 +1,8 @@
 //! What is run: for how long, in which wind, and how everything else that comes from outside moves.
 
 use crate::error::Result;
-use crate::fmu::Element;
 use crate::fmu::description::number;
+use crate::fmu::vocabulary::Element;
 use std::f64::consts::TAU;
 
 /// Parameters of every run.

@@ -6,7 +6,7 @@ use crate::fmu::description::number;
 use crate::fmu::importer::array_element_name;
 use crate::fmu::instance::Instance;
 use crate::fmu::refusal::Refusal;
-use crate::fmu::{
+use crate::fmu::vocabulary::{
     Causality, FmiVersion, Groups, Listing, OnsetBounds, Resources, Response, Role, StartValue,
     Variable, array_of,
 };
