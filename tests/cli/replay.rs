@@ -73,6 +73,14 @@ fn spoilt_references(at: &Path) {
         "spoilt.fmu",
         &["as_exported.ssv", "a name, and a `Real` with its `value`"],
     );
+    spoil(&whole, &spoilt, &of("as_exported.ssv"), |text| {
+        text.replacen("name=\"mass\"", "name=\"heave\"", 1)
+    });
+    not_as_meant(
+        at,
+        "spoilt.fmu",
+        &["`heave`: expected one that can be set, found output"],
+    );
     spoil(&whole, &spoilt, &of("smoke_test.exp"), |text| {
         text.replace("stepSize=\"0.1\"", "stepSize=\"1e-12\"")
     });

@@ -2,7 +2,26 @@
 //!
 //! [`Fmu::open`] unpacks into a temporary directory and reads the description; [`Fmu::check`] looks for everything
 //! that some importer would stumble over and then runs the FMU; [`Fmu::instantiate`] gives a [`Slave`] to be driven
-//! call by call.
+//! call by call:
+//!
+//! ```no_run
+//! # mod aerodeck { pub mod fmu { pub use aerodeck_fmu_host as importer; } pub use aerodeck_core::error; }
+//! use aerodeck::fmu::importer::{Fmu, Value};
+//!
+//! let fmu = Fmu::open("deck_section.fmu")?;
+//! let mut slave = fmu.instantiate("released")?;
+//! slave.set("wind_speed", &Value::Real(30.0))?;
+//! slave.setup(0.0, None, None)?;
+//! slave.enter_initialization()?;
+//! slave.exit_initialization()?;
+//! let step_s = 0.01;
+//! for i in 0..1000 {
+//!     slave.do_step(f64::from(i) * step_s, step_s)?;
+//!     println!("{} {}", f64::from(i + 1) * step_s, slave.get("heave")?);
+//! }
+//! slave.terminate()?;
+//! # Ok::<(), aerodeck::error::Error>(())
+//! ```
 //!
 //! The code of an FMU runs in this process: one that crashes takes it along.
 #![cfg_attr(not(test), deny(clippy::undocumented_unsafe_blocks))]
