@@ -105,14 +105,13 @@ pub(super) fn unit_response(
     let samples = unit.displacement.len();
     let fourier = padded(samples);
     let spectrum = fourier.spectrum(unit.displacement.iter().copied());
-    let transfers = transfers(model, fourier.length(), sampling_hz, scale_s)?;
-    let entry = |i: usize, j: usize| {
-        let half = transfers.iter().zip(&spectrum);
-        in_time(&fourier, half.map(|(g, r)| g[(i, j)] * r), samples)
-    };
-    let all = 0..model.dofs().len();
-    let row = |i: usize| all.clone().map(|j| entry(i, j)).collect();
-    Ok(all.clone().map(row).collect())
+    let n = model.dofs().len();
+    let force =
+        |g: &TransferMatrix, bin: usize, entry: usize| g[(entry / n, entry % n)] * spectrum[bin];
+    let halves = halves(model, fourier.length(), sampling_hz, scale_s, n * n, force)?;
+    let mut entries = halves.into_iter().map(|q| in_time(&fourier, q, samples));
+    let row = |_| entries.by_ref().take(n).collect();
+    Ok((0..n).map(row).collect())
 }
 
 /// Dimensionless force of each row, `[row][sample]`, to dimensionless motions that were zero before their first sample:
@@ -127,15 +126,15 @@ pub(super) fn response(
     let fourier = padded(samples);
     let spectra = motion.iter().map(|r| fourier.spectrum(r.iter().copied()));
     let spectra: Vec<_> = spectra.collect();
-    let transfers = transfers(model, fourier.length(), sampling_hz, scale_s)?;
-    let row = |i: usize| {
-        let half = transfers.iter().enumerate().map(|(bin, g)| {
-            let columns = spectra.iter().enumerate();
-            columns.map(|(j, r)| g[(i, j)] * r[bin]).sum()
-        });
-        in_time(&fourier, half, samples)
+    let force = |g: &TransferMatrix, bin: usize, row: usize| {
+        let columns = spectra.iter().enumerate();
+        columns.map(|(j, r)| g[(row, j)] * r[bin]).sum()
     };
-    Ok((0..model.dofs().len()).map(row).collect())
+    let rows = model.dofs().len();
+    let halves = halves(model, fourier.length(), sampling_hz, scale_s, rows, force)?;
+    drop(spectra);
+    let forces = halves.into_iter().map(|q| in_time(&fourier, q, samples));
+    Ok(forces.collect())
 }
 
 /// Transforms of records of so many samples, padded with at least as many zeros.
@@ -143,29 +142,34 @@ fn padded(samples: usize) -> Fourier {
     Fourier::new((2 * samples.max(1)).next_power_of_two())
 }
 
-/// `G` at every bin of a transform of this length, from zero to half the sampling frequency.
-fn transfers(
+/// So many forces at every bin of a transform of this length, from zero to half the sampling frequency, each as `force` makes it of
+/// `G`, the bin and its own number. `G` of one bin is kept at a time: matrices of a long record are larger than its forces.
+fn halves(
     model: &dyn Transfer,
     length: usize,
     sampling_hz: f64,
     scale_s: f64,
-) -> Result<Vec<TransferMatrix>> {
-    let at = |bin: usize| {
+    count: usize,
+    force: impl Fn(&TransferMatrix, usize, usize) -> Complex<f64>,
+) -> Result<Vec<Vec<Complex<f64>>>> {
+    let mut all: Vec<_> = (0..count)
+        .map(|_| Vec::with_capacity(length / 2 + 1))
+        .collect();
+    for bin in 0..=length / 2 {
         let omega = TAU * sampling_hz * bin as f64 / length as f64;
-        model.transfer(ReducedFrequency::from_full_width(omega * scale_s))
-    };
-    (0..=length / 2).map(at).collect()
+        let g = model.transfer(ReducedFrequency::from_full_width(omega * scale_s))?;
+        for (number, half) in all.iter_mut().enumerate() {
+            half.push(force(&g, bin, number));
+        }
+    }
+    Ok(all)
 }
 
 /// The samples of a force whose spectrum has this half; real motions give real forces: the other half is the conjugate.
-fn in_time(
-    fourier: &Fourier,
-    half: impl Iterator<Item = Complex<f64>>,
-    samples: usize,
-) -> Vec<f64> {
+fn in_time(fourier: &Fourier, half: Vec<Complex<f64>>, samples: usize) -> Vec<f64> {
     let length = fourier.length();
     let mut spectrum = vec![Complex::default(); length];
-    for (bin, q) in half.enumerate() {
+    for (bin, q) in half.into_iter().enumerate() {
         spectrum[(length - bin) % length] = q.conj();
         spectrum[bin] = q;
     }
