@@ -49,7 +49,7 @@ impl System {
     /// Its archive: the description, and units and parameter sets in `resources/`.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::Error::Input) for a number that is not finite, for a connection of a component that is not there, and
+    /// [`Error::Input`] for a number that is not finite, for a connection of a component that is not there, and
     /// for an input with two.
     pub fn package(&self) -> Result<Vec<u8>> {
         for end in self.connections.iter().flat_map(|c| [&c.from, &c.to]) {
