@@ -12,7 +12,7 @@ use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::aerodynamics::laguerre::{DiscreteTerm, Recursion, alpha_lower_bound, discrete_memory};
-use crate::error::{Result, ensure};
+use crate::error::{Result, counted, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -123,11 +123,11 @@ pub fn fit_discrete(
     let shared = parameters.iter().all(|p| *p == parameters[0]);
     let report = FitReport {
         method: format!(
-            "discrete Laguerre as in the thesis, L = {}, α = {}{}, Δs = {delta_s:.6}, fitted to {} record(s)",
+            "discrete Laguerre as in the thesis, L = {}, α = {}{}, Δs = {delta_s:.6}, fitted to {}",
             fit.filters,
             fit.alpha,
             describe_own(fit.own.len()),
-            records.each.len()
+            counted(records.each.len(), "record")
         ),
         weights: fit.weights.describe().into(),
         samples: fitted.systems.whole(0).rows,

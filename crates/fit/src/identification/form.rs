@@ -331,7 +331,7 @@ impl PoleSearch {
             let (count, one) = (list.len(), form.free_poles());
             let several = key == "fixed" && form.poles_per_force();
             let fits = count == one || several && count > 0 && count.is_multiple_of(one);
-            let expected = format_args!("{one} number(s) for {}", form.describe());
+            let expected = format!("{} for {}", counted(one, "number"), form.describe());
             ensure(fits, place, expected, count)?;
             for p in list {
                 positive(place, *p)?;

@@ -5,7 +5,7 @@
 
 use super::basis::index_of;
 use super::form::{Form, PoleSearch};
-use crate::error::{Error, Result, ensure};
+use crate::error::{Error, Result, counted, ensure};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -66,7 +66,10 @@ pub(crate) struct EntryForm {
 pub(crate) fn describe_own(count: usize) -> String {
     match count {
         0 => String::new(),
-        n => format!(", filters of their own for {n} transfer function(s)"),
+        n => format!(
+            ", filters of their own for {}",
+            counted(n, "transfer function")
+        ),
     }
 }
 
@@ -211,7 +214,7 @@ mod tests {
             assert!(message(&laguerre, &[own(y, t, Some(many), None)]).contains("at most 100"));
         }
         let two = [own(y, t, None, Some(vec![0.2, 0.4]))];
-        assert!(message(&laguerre, &two).contains("1 number(s)"));
+        assert!(message(&laguerre, &two).contains("1 number for"));
         let rational = Form::Rational {
             lags: 1,
             added_mass: true,

@@ -16,7 +16,7 @@ use super::time::record::{DimensionlessRecord, Records};
 use super::time::search::{EntryPoles, PASSES, choose_poles};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::wind_tunnel::RecordSource;
 
 /// Fits a continuous model to records of any speeds and sampling frequencies.
@@ -35,7 +35,7 @@ use crate::wind_tunnel::RecordSource;
 /// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
 /// let records: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
 /// let fitted = fit_records(&records, &TimeFit::default(), &|_| ())?;
-/// assert!(fitted.report.method.contains("4 record(s) in the time domain"));
+/// assert!(fitted.report.method.contains("4 records in the time domain"));
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
 ///
@@ -64,10 +64,10 @@ pub fn fit_records(
     let alike = found.chains.iter().all(|c| *c == found.chains[0]);
     let mut report = FitReport {
         method: format!(
-            "{}{}, fitted to {} record(s) in the time domain",
+            "{}{}, fitted to {} in the time domain",
             fit.form.describe(),
             describe_own(fit.own.len()),
-            records.each.len()
+            counted(records.each.len(), "record")
         ),
         weights: fit.weights.describe().into(),
         samples: found.systems.whole(0).rows,

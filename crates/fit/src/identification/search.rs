@@ -8,7 +8,7 @@
 
 use super::form::{Form, PoleSearch};
 use super::report::{SearchPoint, SearchReport, best_of};
-use crate::error::{Result, ensure};
+use crate::error::{Result, counted, ensure};
 use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::state_space::golden_section;
@@ -58,7 +58,7 @@ impl Bounds {
         ensure(
             bounds.slack(count) > 0.0,
             "poles.min, poles.max",
-            format_args!("room for {count} pole(s) a factor {ratio} apart"),
+            format_args!("room for {} a factor {ratio} apart", counted(count, "pole")),
             format_args!("{min} to {max}"),
         )?;
         Ok(bounds)

@@ -9,7 +9,7 @@
 //!
 //! A block comes as `Qᵀ` times its rows: whatever is outside the span of its columns contributes nothing.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::identification::least_squares::StreamingQr;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
@@ -119,8 +119,8 @@ impl Design {
     pub(crate) fn new(blocks: Vec<Block>, tangent: DMatrix<f64>) -> Result<Self> {
         if blocks.len() < 2 {
             return Err(Error::Numerical(format!(
-                "covariance: {} independent block(s), at least two are needed",
-                blocks.len()
+                "covariance: {}, at least two are needed",
+                counted(blocks.len(), "independent block")
             )));
         }
         let (parameters, free) = tangent.shape();

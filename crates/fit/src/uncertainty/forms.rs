@@ -12,7 +12,7 @@ use crate::aerodynamics::derivatives::{
     TableHeader, TransferSample,
 };
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::flutter::{FlutterSearch, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::{
@@ -276,7 +276,7 @@ fn fitted_forms(tested: ReducedFrequencyRange) -> Vec<(String, FrequencyFit)> {
             lags,
             added_mass: true,
         };
-        (format!("{lags} lag(s)"), form, PoleSearch::default())
+        (counted(lags, "lag"), form, PoleSearch::default())
     };
     let banks = BANKS.map(|count| bank(count, WIDE));
     let banks = banks.chain([bank(NARROW.0, NARROW.1)]);

@@ -1,7 +1,7 @@
 //! What the parameters of a fit with searched poles are: its coefficients, the poles that a search found inside its
 //! bounds, and the directions that active constraints leave to them.
 
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::identification::affine::AffineSpace;
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{NOTHING_HELD, SAME_DIRECTION};
@@ -191,7 +191,10 @@ impl FitParameters {
         };
         let held = match self.held {
             0 => String::new(),
-            n => format!("; {n} pole(s) held by a bound of the search count as known"),
+            n => {
+                let poles = counted(n, "pole");
+                format!("; counted as known: {poles} held by a bound of the search")
+            }
         };
         searched.to_owned() + &held
     }
@@ -273,6 +276,6 @@ pub(super) fn constraint_sentence(report: &FitReport) -> String {
         true => ", but not the growth with which the tests end: it follows the data",
         false => "",
     };
-    let count = active.len();
-    format!("; what {count} active constraint(s) hold counts as known{follows}")
+    let held = counted(active.len(), "active constraint");
+    format!("; what is held by {held} counts as known{follows}")
 }

@@ -1,6 +1,6 @@
 //! Poles of fits to tables: of every group of entries that shares them, by itself and under constraints.
 
-use crate::error::{Result, ensure};
+use crate::error::{Result, counted, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::form::Form;
 use crate::identification::options::FrequencyFit;
@@ -84,12 +84,12 @@ fn state_lags_of_forces(forms: &mut [EntryForm], fit: &FrequencyFit, n: usize) -
     };
     let count = fit.form.free_poles();
     let lists: Vec<&[f64]> = fixed.chunks(count).collect();
-    ensure(
+    let (fits, one) = (
         lists.len() == 1 || lists.len() == n,
-        "poles.fixed",
-        format_args!("{count} number(s), or {} for the {n} forces", n * count),
-        fixed.len(),
-    )?;
+        counted(count, "number"),
+    );
+    let expected = format_args!("{one}, or {} for the {n} forces", n * count);
+    ensure(fits, "poles.fixed", expected, fixed.len())?;
     for (e, form) in forms.iter_mut().enumerate() {
         let list = lists[if lists.len() == 1 { 0 } else { e / n }];
         form.fixed = Some(list.to_vec());

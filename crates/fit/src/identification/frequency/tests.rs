@@ -298,7 +298,7 @@ fn impossible_options_are_refused_by_key() {
         poles: PoleSearch::fixed(&[0.1]),
         ..rational(2, true)
     };
-    assert!(message(wrong_count).starts_with("poles.fixed: expected 2 number(s)"));
+    assert!(message(wrong_count).starts_with("poles.fixed: expected 2 numbers"));
     let many = FrequencyFit {
         form: laguerre(14),
         ..table_alone()

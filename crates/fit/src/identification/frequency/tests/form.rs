@@ -281,6 +281,6 @@ fn forms_for_tables_only_say_so() {
     let message = fit_table(&flat_plate(), &Dof::TWO, &odd).unwrap_err();
     assert_eq!(
         message.to_string(),
-        "poles.fixed: expected 1 number(s), or 2 for the 2 forces, found 3"
+        "poles.fixed: expected 1 number, or 2 for the 2 forces, found 3"
     );
 }
