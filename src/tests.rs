@@ -9,7 +9,7 @@ use crate::fmu::importer::Fmu;
 use crate::fmu::instance::Instance;
 use crate::fmu::package::{Export, FmiVersion, Runtime, package};
 use crate::fmu::resources::{OptionFiles, Resources};
-use crate::fmu::variables::{Causality, Listing, StartValue};
+use crate::fmu::variables::{Causality, StartValue};
 use crate::study::{Study, demo_study_text};
 use crate::trained_model::TrainedModel;
 use rand::{Rng, SeedableRng};
@@ -200,7 +200,7 @@ fn mutated_states() {
 fn packed() -> Vec<u8> {
     let model = TrainedModel::from_json(&String::from_utf8(model("rational")).unwrap()).unwrap();
     let export = Export {
-        listing: Listing::All,
+        reals_only: false,
         allow_unstable: true,
         ..Export::default()
     };

@@ -31,7 +31,6 @@ use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::package::{Export, FmiVersion, Runtime, write_fmu};
-use aerodeck::fmu::variables::Listing;
 use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
@@ -221,7 +220,7 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
         for (unit, force) in [("section", None), ("force", Some(forces))] {
             let export = Export {
                 force,
-                listing: Listing::Reals,
+                reals_only: true,
                 allow_unstable: true,
                 ..Export::default()
             };

@@ -11,7 +11,6 @@ use aerodeck::flutter::OnsetSearch;
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::onset_bounds::OnsetBounds;
 use aerodeck::fmu::package::{Export, FmiVersion, Label, Runtime, write_fmu};
-use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::verdict::Verdict;
 use pyo3::prelude::*;
@@ -110,11 +109,7 @@ pub fn export_fmu(
         bounds,
         gusts,
         verdict,
-        listing: if reals_only {
-            Listing::Reals
-        } else {
-            Listing::All
-        },
+        reals_only,
         label: label.dated().map_err(raised)?,
         version: version(fmi)?,
         allow_unstable,

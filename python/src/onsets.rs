@@ -5,8 +5,9 @@ use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::section::{Section, place};
 use crate::work::{Work, on_threads};
+use aerodeck::flutter::{SweepOutcome, SweptOnset};
 use aerodeck::section::SectionModel;
-use aerodeck::uncertainty::monte_carlo::{OnsetKind, SectionProperty, many_onsets};
+use aerodeck::uncertainty::monte_carlo::{SectionProperty, many_onsets};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -123,17 +124,27 @@ pub fn onsets(
         })
     })?;
     let found = found.and_then(|found| found).map_err(raised)?;
-    let are = |kind: OnsetKind| {
-        let all = found.kinds.iter().map(|k| *k == kind).collect();
+    let are = |is: &dyn Fn(&SweepOutcome) -> bool| {
+        let all = found.iter().map(is).collect();
         PyArray1::from_vec(py, all).unbind()
     };
-    let judged = found.kinds.iter().map(|k| *k != OnsetKind::NotJudged);
+    let numbers = |pick: fn(&SweptOnset) -> f64| {
+        let number = |outcome: &SweepOutcome| match outcome {
+            SweepOutcome::Onset(at) | SweepOutcome::UnstableAtOrBelow(at) => pick(at),
+            _ => f64::NAN,
+        };
+        let all = found.iter().map(number).collect();
+        PyArray1::from_vec(py, all).unbind()
+    };
     Ok(Onsets {
-        judged: PyArray1::from_vec(py, judged.collect()).unbind(),
+        judged: are(&|outcome| match outcome {
+            SweepOutcome::Stable { judged_to_m_s } => *judged_to_m_s >= limit,
+            outcome => *outcome != SweepOutcome::Unresolved,
+        }),
         searched_to_m_s: limit,
-        tested: are(OnsetKind::Tested),
-        unstable: are(OnsetKind::UnstableAtOrBelow),
-        speed_m_s: PyArray1::from_vec(py, found.speeds_m_s).unbind(),
-        frequency_hz: PyArray1::from_vec(py, found.frequencies_hz).unbind(),
+        tested: are(&|o| matches!(o, SweepOutcome::Onset(at) if at.in_tested_range)),
+        unstable: are(&|o| matches!(o, SweepOutcome::UnstableAtOrBelow(_))),
+        speed_m_s: numbers(|at| at.speed_m_s),
+        frequency_hz: numbers(|at| at.frequency_hz),
     })
 }

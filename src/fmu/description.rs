@@ -7,7 +7,7 @@ use super::log_categories::LOG_CATEGORIES;
 use super::package::label::Label;
 use super::si::SiUnit;
 use super::vocabulary::{
-    Causality, Dependency, DependencyKind, Element, FmiTerm, Listing, MODEL_IDENTIFIER, Resources,
+    Causality, Dependency, DependencyKind, Element, FmiTerm, MODEL_IDENTIFIER, Resources,
     StartValue, Variable, VariableTable,
 };
 use crate::error::{Error, Result};
@@ -18,13 +18,13 @@ const MAX_DEFAULT_STEPS: f64 = 1000.0;
 /// Relative tolerance for importers that integrate: with the defaults of some, a growing motion is a sixth off after a second.
 const TOLERANCE: f64 = 1e-6;
 
-/// The description of an exported model with the variables that are to be listed.
+/// The description of an exported model, of all its variables or of `reals_only`.
 ///
 /// # Errors
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
-pub fn model_description(resources: &Resources, listing: Listing, label: &Label) -> Result<String> {
+pub fn model_description(resources: &Resources, reals_only: bool, label: &Label) -> Result<String> {
     let table = resources.described_table()?;
-    let (table, references) = &table.listed(listing);
+    let (table, references) = &table.listed(reals_only);
     let variables = references.iter().zip(table.variables());
     let variables = variables
         .map(|(reference, v)| scalar(*reference, v))

@@ -25,7 +25,7 @@ use super::description::model_description;
 use super::description_fmi3;
 use super::location::MODEL_FILE;
 use super::vocabulary::{
-    BOUNDS_FILE, BRIDGE_FILE, BridgeOptions, Element, FORCE_FILE, ForceOptions, GUST_FILE, Listing,
+    BOUNDS_FILE, BRIDGE_FILE, BridgeOptions, Element, FORCE_FILE, ForceOptions, GUST_FILE,
     OnsetBounds, OptionFiles, Resources, TURBULENCE_FILE, TurbulenceOptions,
 };
 use crate::aerodynamics::GustForce;
@@ -71,8 +71,8 @@ pub struct Export {
     /// Verdict on the section, or on the bridge whose forces they are, for the page that documents it; without, what the section's own
     /// searches say.
     pub verdict: Option<Verdict>,
-    /// Which variables its description lists.
-    pub listing: Listing,
+    /// Whether its description lists real variables only.
+    pub reals_only: bool,
     /// What it says of its origin.
     pub label: Label,
     /// Of the standard.
@@ -95,7 +95,7 @@ pub(crate) fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
 /// [`Error::Numerical`] for a model that grows where it should not, unless that is allowed. What a bridge does below its onset is for
 /// the caller to judge.
 pub fn package(model: &TrainedModel, runtimes: &[Runtime], export: Export) -> Result<Vec<u8>> {
-    if (export.listing, export.version) == (Listing::Reals, FmiVersion::Three) {
+    if export.reals_only && export.version == FmiVersion::Three {
         let place = "real variables only";
         return Err(Error::input(place, "FMI 2.0", "FMI 3.0"));
     }
@@ -162,9 +162,10 @@ fn assembled(
     runtimes: &[Runtime],
     export: &Export,
 ) -> Result<Vec<u8>> {
-    let (listing, version, verdict) = (export.listing, export.version, export.verdict.as_ref());
+    let (reals_only, version) = (export.reals_only, export.version);
+    let verdict = export.verdict.as_ref();
     let xml = match version {
-        FmiVersion::Two => model_description(&resources, listing, &export.label),
+        FmiVersion::Two => model_description(&resources, reals_only, &export.label),
         FmiVersion::Three => description_fmi3::model_description(&resources, &export.label),
     }?;
     let described = Element::parse(&xml)?;
@@ -179,7 +180,7 @@ fn assembled(
         FmiVersion::Three => "terminalsAndIcons/icon.png",
     };
     files.insert(icon.into(), ICON.to_vec());
-    let (listed, _) = resources.table.listed(listing);
+    let (listed, _) = resources.table.listed(reals_only);
     let text = terminals::document(&listed, version);
     files.insert(terminals::FILE.into(), text.into_bytes());
     let options = options.into_iter();
@@ -196,7 +197,9 @@ fn assembled(
     files.extend(binaries(runtimes, version)?);
     if !export.without_reference_runs {
         let bounds = export.bounds.as_ref();
-        files.extend(reference_runs::files(resources, bounds, listing, version)?);
+        files.extend(reference_runs::files(
+            resources, bounds, reals_only, version,
+        )?);
     }
     archive(&files)
 }

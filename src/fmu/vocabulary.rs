@@ -10,6 +10,6 @@ pub(super) use aerodeck_unit::onset_bounds::{BOUNDS_FILE, OnsetBounds};
 pub(super) use aerodeck_unit::resources::{GUST_FILE, OptionFiles, Resources};
 pub(super) use aerodeck_unit::standard::{FmiTerm, FmiVersion, each_once};
 pub(super) use aerodeck_unit::variables::{
-    Causality, Dependency, DependencyKind, Listing, Response, Role, SectionParameter, StartValue,
-    Variable, VariableTable,
+    Causality, Dependency, DependencyKind, Response, Role, SectionParameter, StartValue, Variable,
+    VariableTable,
 };

@@ -4,7 +4,6 @@ use crate::bridges::{SEARCH, TWO, coupled, langenuen, langenuen_text, lively, re
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{CheckReport, Fmu, Slave, Value};
 use aerodeck::fmu::package::{Export, Runtime, package, write_archive};
-use aerodeck::fmu::variables::Listing;
 use aerodeck::study::bridge::BridgeExportOptions;
 use aerodeck::trained_model::TrainedModel;
 use std::time::{Duration, Instant};
@@ -134,7 +133,7 @@ fn a_bridge_of_torsional_modes_is_exported() {
     let filters = fmu.model_description().variable("filters").unwrap();
     let of_all = coupled(&study.by_model).aerodynamics().states();
     assert_eq!(filters.start, Some(Value::Integer(of_all as i32)));
-    export.listing = Listing::Reals;
+    export.reals_only = true;
     let (_, fmu) = checked(&model, &export);
     assert!(fmu.model_description().variable("filters").is_none());
     assert!(fmu.model_description().variable("flutter_speed").is_some());

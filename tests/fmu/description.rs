@@ -7,7 +7,6 @@ use aerodeck::aerodynamics::Transfer;
 use aerodeck::fmu::description::model_description;
 use aerodeck::fmu::package::Label;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
-use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::units::ReducedFrequency;
 use std::path::{Path, PathBuf};
@@ -18,7 +17,7 @@ fn golden(kind: &str) -> PathBuf {
 
 fn describe(json: &[u8]) -> String {
     let resources = Resources::from_bytes(json, OptionFiles::default()).unwrap();
-    model_description(&resources, Listing::All, &Label::default()).unwrap()
+    model_description(&resources, false, &Label::default()).unwrap()
 }
 
 #[test]

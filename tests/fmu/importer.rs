@@ -6,7 +6,6 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{Fmu, FmuSeverity, Slave, SteppedSearch, Value, onset_by_stepping};
 use aerodeck::fmu::package::{Export, FmiVersion, Runtime, write_fmu};
-use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
 
@@ -50,7 +49,7 @@ fn real_variables_alone_pass_every_check() {
     for kind in KINDS {
         let path = folder.path().join(format!("{kind}.fmu"));
         let export = Export {
-            listing: Listing::Reals,
+            reals_only: true,
             version: FmiVersion::Two,
             allow_unstable: true,
             ..Export::default()

@@ -7,9 +7,7 @@ use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Label;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
-use aerodeck::fmu::variables::{
-    Causality, ComputedNumber, Dependency, Formula, Known, Listing, Response,
-};
+use aerodeck::fmu::variables::{Causality, ComputedNumber, Dependency, Formula, Known, Response};
 use aerodeck::section::Dof;
 use aerodeck::study::bridge::BridgeExportOptions;
 use aerodeck::trained_model::TrainedModel;
@@ -120,7 +118,7 @@ fn check(resources: Resources, initial: &str, rotations: &[&str]) {
     for known in ["wind_speed", "air_density", "onset_search_limit", initial] {
         assert!(knowns.contains(&known.to_owned()), "{known}: {knowns:?}");
     }
-    let description = model_description(&resources, Listing::All, &Label::default()).unwrap();
+    let description = model_description(&resources, false, &Label::default()).unwrap();
     assert!(description.contains("name=\"of_all\""));
     let reference = resources.table.variables().len();
     let listed = description
@@ -326,7 +324,7 @@ fn check_strip(resources: Resources, strip: &str) {
     knowns.push(name("length"));
     knowns.sort();
     assert_eq!(names(&of_row.initial_dependencies), knowns);
-    let description = model_description(&resources, Listing::All, &Label::default()).unwrap();
+    let description = model_description(&resources, false, &Label::default()).unwrap();
     let reference = described.find_name(&power).unwrap() + 1;
     let listed = format!("<Unknown index=\"{reference}\"");
     assert_eq!(description.matches(&listed).count(), 2);

@@ -26,7 +26,6 @@ pub use computed::{ComputedNumber, Formula, Known, OnsetNumbers, Present};
 pub(crate) use computed_rows::{LINEAR_ROTATION_RAD, fill_computed_dependencies};
 pub use dual::Dual;
 pub(crate) use force::{StripState, strip_states};
-pub use listing::Listing;
 pub use parameters::SectionParameter;
 pub use response::Response;
 pub use variable::{Dependency, DependencyKind, Role, StartValue, StripParameter, Variable};

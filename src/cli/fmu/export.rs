@@ -11,7 +11,6 @@ use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, FmiVersion, Label, Runtime, growth_of, package, write_archive};
-use crate::fmu::variables::Listing;
 use crate::plausibility::{of_model, sentences};
 use crate::study::saved_evidence;
 use crate::trained_model::TrainedModel;
@@ -137,10 +136,7 @@ impl FmuExportArgs {
         let export = Export {
             label: label.dated()?,
             version: self.fmi,
-            listing: match self.reals_only {
-                true => Listing::Reals,
-                false => Listing::All,
-            },
+            reals_only: self.reals_only,
             without_reference_runs: self.no_reference,
             ..export
         };

@@ -7,7 +7,7 @@ mod unit;
 use crate::error::Result;
 use crate::fmu::importer::{LS_REF, LS_REF_MANIFEST};
 use crate::fmu::ssv::parameter_set;
-use crate::fmu::vocabulary::{BOUNDS_FILE, Element, FmiVersion, Listing, OnsetBounds, Resources};
+use crate::fmu::vocabulary::{BOUNDS_FILE, Element, FmiVersion, OnsetBounds, Resources};
 use plan::PARAMETERS;
 use std::collections::BTreeMap;
 use unit::ReferenceUnit;
@@ -18,15 +18,15 @@ const NAMESPACE: &str = "http://fmi-standard.org/fmi-ls-manifest";
 
 type ArchiveFiles = BTreeMap<String, Vec<u8>>;
 
-/// The files of a unit; `listed` says which variables its description lists.
+/// The files of a unit; `reals_only` where its description lists no other variables.
 pub(super) fn files(
     resources: Resources,
     bounds: Option<&OnsetBounds>,
-    listing: Listing,
+    reals_only: bool,
     version: FmiVersion,
 ) -> Result<ArchiveFiles> {
     let mut files = ArchiveFiles::new();
-    let unit = ReferenceUnit::new(resources, listing, version)?;
+    let unit = ReferenceUnit::new(resources, reals_only, version)?;
     let mut entries = Vec::new();
     let mut put = |entry: [&str; 4], text: String| {
         files.insert(format!("{LS_REF}/{}", entry[0]), text.into_bytes());

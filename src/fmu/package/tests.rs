@@ -71,7 +71,7 @@ fn the_page_names_everything_and_loads_nothing() {
     for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
         let json = model(kind).to_json().unwrap();
         let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
-        let xml = model_description(&resources, Listing::All, &Label::default()).unwrap();
+        let xml = model_description(&resources, false, &Label::default()).unwrap();
         let xml = Element::parse(&xml).unwrap();
         let page = documentation::documentation(&resources, &embedded(), &xml, None).unwrap();
         for v in resources.table.variables() {
@@ -348,7 +348,7 @@ fn control_characters_stay_out_of_the_description() {
     let json = model.to_json().unwrap();
     let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
     let three = description_fmi3::model_description(&resources, &label).unwrap();
-    let two = model_description(&resources, Listing::All, &label).unwrap();
+    let two = model_description(&resources, false, &label).unwrap();
     for text in [&two, &three] {
         let root = Element::parse(text).unwrap();
         assert_eq!(root.attribute("modelName"), Some("name"));

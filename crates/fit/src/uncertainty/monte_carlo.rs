@@ -18,7 +18,7 @@ pub use plan::{
     AerodynamicScatter, Correlation, MAX_SAMPLES, MonteCarloPlan, RandomParameter, SectionProperty,
 };
 pub use results::{DesignCheck, FailedSample, Histogram, MonteCarloResult, Quantile, Tally};
-pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo, summarise, tally};
+pub use run::{many_onsets, monte_carlo, summarise, tally};
 pub use scatter::DrawnForces;
 
 #[cfg(test)]

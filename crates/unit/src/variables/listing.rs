@@ -2,24 +2,15 @@
 
 use super::{Dependency, StartValue, Variable, VariableTable};
 
-/// Which variables a description lists.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Listing {
-    /// All.
-    #[default]
-    All,
-    /// Real ones. The others stay in the runtime, unnamed.
-    Reals,
-}
-
 impl VariableTable {
     /// The variables that a description lists, as a table of their own, whose dependencies are indices in it; and their value references:
-    /// the indices in the full table, so that one runtime serves both.
-    pub fn listed(&self, listing: Listing) -> (Self, Vec<usize>) {
+    /// the indices in the full table, so that one runtime serves both. Where it lists `reals_only`, the others stay in the runtime,
+    /// unnamed.
+    pub fn listed(&self, reals_only: bool) -> (Self, Vec<usize>) {
         let real = |v: &Variable| matches!(v.value, StartValue::Real(_));
         let references: Vec<usize> = (0..self.variables.len())
             .filter(|&i| self.variables[i].is_listed)
-            .filter(|&i| listing == Listing::All || real(&self.variables[i]))
+            .filter(|&i| !reals_only || real(&self.variables[i]))
             .collect();
         // ascending, since the references are
         let index = |reference: usize| references.binary_search(&reference).ok();

@@ -7,8 +7,8 @@ use crate::fmu::importer::array_element_name;
 use crate::fmu::instance::Instance;
 use crate::fmu::refusal::Refusal;
 use crate::fmu::vocabulary::{
-    Causality, FmiVersion, Groups, Listing, OnsetBounds, Resources, Response, Role, StartValue,
-    Variable, array_of,
+    Causality, FmiVersion, Groups, OnsetBounds, Resources, Response, Role, StartValue, Variable,
+    array_of,
 };
 use crate::section::{Dof, Translation};
 use std::cell::RefCell;
@@ -48,13 +48,13 @@ pub(super) struct ReferenceUnit {
 }
 
 impl ReferenceUnit {
-    pub(super) fn new(resources: Resources, listing: Listing, version: FmiVersion) -> Result<Self> {
+    pub(super) fn new(resources: Resources, reals_only: bool, version: FmiVersion) -> Result<Self> {
         let table = &resources.table;
         let groups = Groups::new(table);
         let mut listed = BTreeMap::new();
         for (place, v) in table.variables().iter().enumerate() {
             let real = matches!(v.value, StartValue::Real(_));
-            if !v.is_listed || (listing == Listing::Reals && !real) {
+            if !v.is_listed || (reals_only && !real) {
                 continue;
             }
             let array = array_of(v.role, &v.name).filter(|_| version == FmiVersion::Three);

@@ -219,34 +219,8 @@ impl<'a> Finder<'a> {
     }
 }
 
-/// What was found of one section.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OnsetKind {
-    /// An onset inside the tested range.
-    Tested,
-    /// An onset outside it.
-    Untested,
-    /// Growth at the lowest speed that could be judged.
-    UnstableAtOrBelow,
-    /// None up to the highest speed.
-    Stable,
-    /// None as far as it could be judged, which is less than the highest speed.
-    NotJudged,
-}
-
-/// Onsets of many sections, in their order; NaN where there is none.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ManyOnsets {
-    /// Onset speeds, m/s.
-    pub speeds_m_s: Vec<f64>,
-    /// Frequencies at the onset, Hz.
-    pub frequencies_hz: Vec<f64>,
-    /// What each is.
-    pub kinds: Vec<OnsetKind>,
-}
-
 /// Finds the onset of the force model of `model` on `count` sections, over all cores; `section` makes the i-th of them from
-/// that of the model. Continuous models go through [`OnsetSweep`].
+/// that of the model. Continuous models go through [`OnsetSweep`]. What that leaves unresolved is searched in full, which always answers.
 ///
 /// # Errors
 /// [`Error::Input`] naming the number of the first section that cannot be.
@@ -256,7 +230,7 @@ pub fn many_onsets(
     section: &(dyn Fn(usize, &mut SectionModel) + Sync),
     speed_max_m_s: f64,
     progress: OnDone<'_>,
-) -> Result<ManyOnsets> {
+) -> Result<Vec<SweepOutcome>> {
     let finder = Finder::new(model, speed_max_m_s)?;
     let (values, _) = coefficients::list(&model.model);
     let mut outcomes = vec![SweepOutcome::Unresolved; count];
@@ -269,11 +243,7 @@ pub fn many_onsets(
         }
         Ok(())
     })?;
-    let mut all = ManyOnsets::default();
-    for outcome in outcomes {
-        all.push(outcome, speed_max_m_s);
-    }
-    Ok(all)
+    Ok(outcomes)
 }
 
 fn of_section(index: usize, error: Error) -> Error {
@@ -283,24 +253,5 @@ fn of_section(index: usize, error: Error) -> Error {
             Error::Input(input)
         }
         other => other,
-    }
-}
-
-impl ManyOnsets {
-    fn push(&mut self, outcome: SweepOutcome, speed_max_m_s: f64) {
-        let (kind, at) = match &outcome {
-            SweepOutcome::Onset(o) if o.in_tested_range => (OnsetKind::Tested, Some(o)),
-            SweepOutcome::Onset(o) => (OnsetKind::Untested, Some(o)),
-            SweepOutcome::UnstableAtOrBelow(o) => (OnsetKind::UnstableAtOrBelow, Some(o)),
-            SweepOutcome::Stable { judged_to_m_s } if *judged_to_m_s >= speed_max_m_s => {
-                (OnsetKind::Stable, None)
-            }
-            // the search in full, which follows an unresolved sweep, always answers
-            SweepOutcome::Stable { .. } | SweepOutcome::Unresolved => (OnsetKind::NotJudged, None),
-        };
-        let value = |pick: fn(&SweptOnset) -> f64| at.map_or(f64::NAN, pick);
-        self.speeds_m_s.push(value(|o| o.speed_m_s));
-        self.frequencies_hz.push(value(|o| o.frequency_hz));
-        self.kinds.push(kind);
     }
 }
