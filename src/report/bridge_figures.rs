@@ -7,7 +7,8 @@ use super::vocabulary::{
 };
 use crate::bridge::Bridge;
 use crate::error::Result;
-use crate::flutter::{BridgeMotion, ModeBranch, ModePoint};
+use crate::flutter::{ModeBranch, ModePoint};
+use crate::study::bridge::BridgeMotion;
 use crate::study::bridge::{BridgeFlutter, NAMED_SHARE};
 use crate::verdict::Verdict;
 

@@ -7,9 +7,11 @@ mod evidence;
 mod export;
 mod forces;
 mod interval;
+mod motion;
 mod parts;
 mod scaled_forces;
 mod scatter;
+mod similarity;
 
 pub(crate) use answers::NAMED_SHARE;
 pub use answers::{
@@ -20,13 +22,15 @@ pub use envelope::{SectionForceResponse, SpanEnvelope};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForceModels;
 pub(crate) use forces::block_table;
+pub use motion::{BridgeMotion, ModeShare, NodeMotion, motion_at_onset, static_deflection};
 pub use parts::SectionForcePart;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
+pub use similarity::{Similarity, similarities};
 
 use super::KnownUncertainty;
 use super::speeds::{SEARCHED_AT_LEAST, reaching};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::bridge::{Bridge, BridgeMode, Similarity, StripGroup, similarities};
+use crate::bridge::{Bridge, BridgeMode, StripGroup};
 use crate::error::{Result, counted};
 use crate::files::bridge::{BridgeFile, BridgeModes, BridgeSectionBlock};
 use crate::flutter::OnsetSearch;

@@ -7,12 +7,13 @@ use aerodeck::aerodynamics::quasi_steady::Arms;
 use aerodeck::aerodynamics::quasi_steady::QuasiSteady;
 use aerodeck::aerodynamics::{FlatPlate, GustSeries, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::{CoupledSection, static_equilibria};
+use aerodeck::buffeting::NonlinearSection;
 use aerodeck::files::coefficients::embedded;
 use aerodeck::flutter::{
     OnsetSearch, determinant_onset, divergence_by_eigenvalues, divergence_speed, find_onset,
     impedance, pk_onset,
 };
-use aerodeck::response::{Inputs, NonlinearSection, Stepper};
+use aerodeck::response::{Inputs, Stepper};
 use aerodeck::section::{Dof, SectionModel, Structure};
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};

@@ -4,16 +4,15 @@ use crate::bridges::{SEARCH, THREE, TWO, coupled, langenuen, langenuen_text, nea
 use aerodeck::aerodynamics::derivatives::InterpolatedTable;
 use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
-use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, similarities, tributary_lengths};
+use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, tributary_lengths};
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::flutter::OnsetInterval;
 use aerodeck::flutter::{
-    OnsetSearch, determinant_onset, divergence_speed, find_onset, pk_onset, static_deflection,
-    trace_modes,
+    OnsetSearch, determinant_onset, divergence_speed, find_onset, pk_onset, trace_modes,
 };
 use aerodeck::section::Dof;
 use aerodeck::section::SectionModel;
-use aerodeck::study::bridge::BridgeStudy;
+use aerodeck::study::bridge::{BridgeStudy, similarities, static_deflection};
 use aerodeck::uncertainty::{AdmissibleForm, FormOnset};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::PI;

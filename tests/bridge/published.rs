@@ -5,9 +5,10 @@ use aerodeck::aerodynamics::Transfer;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::Bridge;
 use aerodeck::flutter::{
-    FlutterSearch, NearbyOnset, OnsetInterval, OnsetSearch, find_onset, impedance, motion_at_onset,
-    pk_curves, pk_onset, trace_modes,
+    FlutterSearch, NearbyOnset, OnsetInterval, OnsetSearch, find_onset, impedance, pk_curves,
+    pk_onset, trace_modes,
 };
+use aerodeck::study::bridge::motion_at_onset;
 use aerodeck::study::bridge::{DerivativeScatter, Scatter};
 use nalgebra::Complex;
 use std::f64::consts::PI;

@@ -4,11 +4,12 @@ use crate::bridges::{SEARCH, TWO, coupled, langenuen, lively, onset};
 use crate::patchwork::patchwork;
 use aerodeck::aerodynamics::RationalAdmittance;
 use aerodeck::files::bridge::FieldTable;
-use aerodeck::flutter::{find_onset, motion_at_onset};
+use aerodeck::flutter::find_onset;
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
     Export, FmiVersion, Label, Runtime, package, write_archive, write_fmu,
 };
+use aerodeck::study::bridge::motion_at_onset;
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
 use serde_json::json;
 use std::fs;

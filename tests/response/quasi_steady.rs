@@ -6,9 +6,9 @@ use aerodeck::aerodynamics::quasi_steady::Arms;
 use aerodeck::aerodynamics::quasi_steady::LinearQuasiSteady;
 use aerodeck::aerodynamics::quasi_steady::QuasiSteady;
 use aerodeck::aeroelastic::{CoupledSection, StaticEquilibrium, static_equilibria};
+use aerodeck::buffeting::{NonlinearSection, largest_difference};
 use aerodeck::files::coefficients::embedded;
-
-use aerodeck::response::{Inputs, NonlinearSection, Stepper, largest_difference};
+use aerodeck::response::{Inputs, Stepper};
 use aerodeck::section::Structure;
 use aerodeck::section::{SectionModel, Translation};
 

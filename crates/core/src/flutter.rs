@@ -4,7 +4,6 @@
 //! determinant in `(V, ω)` and the p-k iteration (for any `G(K)`, tables and the flat plate included).
 
 mod answer;
-mod bridge_motion;
 mod characteristic;
 mod clusters;
 mod columns;
@@ -22,6 +21,7 @@ mod judged;
 mod missed;
 mod modal_characteristic;
 mod mode_words;
+mod nearby_onset;
 mod onset;
 mod pk;
 mod pk_following;
@@ -37,9 +37,6 @@ mod tracking;
 mod unwanted;
 
 pub use answer::{FlutterSearch, UnstableStart};
-pub use bridge_motion::{
-    BridgeMotion, ModeShare, NearbyOnset, NodeMotion, motion_at_onset, static_deflection,
-};
 pub use critical_point::{CriticalPoint, OnsetMethod};
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes, trace_modes_watched};
 pub use determinant::table_tested_from;
@@ -52,6 +49,7 @@ pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::{FastMotion, MovedOnset, StableRange, TestedFrom};
 pub use judged::{bridge_damps_fast_motion, damps_fast_motion};
 pub use mode_words::the_mode;
+pub use nearby_onset::{NearbyOnset, modal_shape};
 pub use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, ModeRatio, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};

@@ -11,7 +11,6 @@ mod lanes;
 mod linked;
 mod matrix_polynomial;
 mod packed;
-mod quasi_steady;
 mod rates;
 mod sampled;
 mod sampling;
@@ -21,7 +20,6 @@ mod values;
 
 pub use lanes::LANES;
 pub use linked::Sparse;
-pub use quasi_steady::{NonlinearRun, NonlinearSection, largest_difference};
 pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
 
 use crate::aerodynamics::{GustForce, RationalAdmittance, Realization};

@@ -14,7 +14,7 @@ use crate::cli::text::ending;
 use crate::cli::vocabulary::{Answer, OutputDir, Progress};
 use crate::error::Result;
 use crate::files::text::csv_cell;
-use crate::flutter::{BridgeMotion, ModePoint, NodeMotion};
+use crate::flutter::ModePoint;
 use crate::report::{
     PlottedSeries, TimePanel, bridge_curves_figure, bridge_roots_figure, flutter_motion_figure,
     scaled_history_figure,
@@ -23,6 +23,7 @@ use crate::study::bridge::{
     BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
     bridge_flutter,
 };
+use crate::study::bridge::{BridgeMotion, NodeMotion};
 use crate::study::derivative_lines;
 use crate::verdict::Verdict;
 use nalgebra::Complex;

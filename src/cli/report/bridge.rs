@@ -10,11 +10,11 @@ use crate::cli::bridge::files::{
 use crate::cli::bridge::summary::{BridgeSummary, ModeFacts, SectionFacts};
 use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
-use crate::flutter::ModeShare;
 use crate::fmu::importer::Fmu;
 use crate::report::{
     PageCurve, PageFigure, PageSection, StudyPage, rendered, sections_of, summary_figure,
 };
+use crate::study::bridge::ModeShare;
 use crate::study::bridge::{LeftOut, NAMED_SHARE};
 use std::path::Path;
 

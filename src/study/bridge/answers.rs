@@ -1,15 +1,15 @@
 //! Flutter and divergence of a bridge, with the modes behind them.
 
 use super::BridgeStudy;
+use super::motion::{BridgeMotion, ModeShare, motion_at_onset, static_deflection};
 use crate::aerodynamics::{RationalModel, Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
-    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, ModeShare, MovedOnset, Onset,
-    OnsetInterval, OnsetSearch, UnwantedGrowth, divergence_speed, divergence_with_forces,
-    find_onset, find_onset_of_modes, motion_at_onset, pk_onset, static_deflection, static_part,
-    trace_modes, unwanted_growth_below,
+    AssumedAtRest, FlutterCurves, FlutterSearch, MovedOnset, Onset, OnsetInterval, OnsetSearch,
+    UnwantedGrowth, divergence_speed, divergence_with_forces, find_onset, find_onset_of_modes,
+    pk_onset, static_part, trace_modes, unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{ModesLeftOut, UntestedParts};

@@ -1,12 +1,12 @@
 //! Mean and turbulent motion along the whole span, accelerations, and section forces, from the covariances of the modes.
 
 use super::BridgeStudy;
+use super::motion::static_deflection;
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
 use crate::buffeting::{FrequencyDomain, peak_factor, rms_of};
 use crate::error::{Error, Result};
 use crate::files::bridge::read_section_forces;
-use crate::flutter::static_deflection;
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 use serde::Serialize;

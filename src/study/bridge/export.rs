@@ -2,15 +2,13 @@
 
 use super::BridgeStudy;
 use super::answers::coupled;
+use super::motion::{BridgeMotion, motion_at_onset};
 use crate::aerodynamics::{RationalAdmittance, Transfer as _};
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::Admittance;
 use crate::error::{Error, Result, ensure};
 use crate::files::bridge::FieldTable;
-use crate::flutter::{
-    BridgeMotion, FlutterSearch, OnsetInterval, divergence_with_forces, motion_at_onset,
-    unwanted_growth_below,
-};
+use crate::flutter::{FlutterSearch, OnsetInterval, divergence_with_forces, unwanted_growth_below};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;

@@ -6,11 +6,12 @@ use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt, LinearQu
 use crate::aeroelastic::{
     CoupledSection, EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria,
 };
+use crate::buffeting::NonlinearSection;
 use crate::buffeting::{BuffetingProblem, turbulence_field};
 use crate::error::{Error, Result, ensure};
 use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
-use crate::response::{Inputs, NonlinearSection, Stepper};
+use crate::response::{Inputs, Stepper};
 use crate::section::{Dof, Structure};
 use crate::verdict::{DivergenceReading, Evidence, FlutterReading, ForceBasis, Verdict};
 use serde::Serialize;

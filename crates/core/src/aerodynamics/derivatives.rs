@@ -29,7 +29,7 @@ macro_rules! read_by_name {
 mod derivative;
 mod interpolated;
 mod interpolation;
-pub mod missing;
+mod missing;
 pub mod notation;
 pub mod table;
 

@@ -11,9 +11,9 @@
 //! way along a ray `λ = r e^{iφ}` from infinity to zero its argument turns by `π` for each zero in the sector between the ray and its
 //! mirror image (the principle of the argument): one that does not turn has none there.
 
-use super::bridge_motion::NearbyOnset;
 use super::following::{Follower, Mode, Modes, growing};
 use super::modal_characteristic::ModalCharacteristic;
+use super::nearby_onset::NearbyOnset;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;

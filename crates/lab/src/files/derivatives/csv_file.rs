@@ -22,7 +22,7 @@
 //! double back. The mean speed may be left empty throughout. Files of the first format, without notation, argument and
 //! axes but with a `sign_convention`, are read as what they are: Scanlan with ½ over V̂, heave up.
 
-use crate::aerodynamics::derivatives::missing::fill_in;
+use super::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint};
 use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};

@@ -12,7 +12,7 @@
 //! commas (in all numbers or in none), and tabs are understood. The `# key: value` lines of the long form may stand above,
 //! all of them optional but what states the convention.
 
-use crate::aerodynamics::derivatives::missing::fill_in;
+use super::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint, Notation};
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};

@@ -11,7 +11,7 @@
 //! `axes` beside their values); the columns are then called as in that notation (`MeanWind_h1`, `Vred_h1`, `h1`),
 //! whatever the sheet `Reduced Velocities` holds.
 
-use crate::aerodynamics::derivatives::missing::fill_in;
+use super::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, StatedConvention};
 use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};

@@ -1,24 +1,11 @@
-//! What a whole bridge does at an onset: the modes that take part and the motion of every node.
+//! What a whole bridge does at an onset, the modes that take part and the motion of every node, and where steady wind holds it.
 
-use super::critical_point::CriticalPoint;
-use super::determinant::StructureInWind;
-use super::following::{MIN_ASSURANCE, Mode, assurance};
-use super::modal_characteristic::ModalCharacteristic;
-use super::onset::ModeRatio;
-use crate::aerodynamics::Transfer;
-use crate::aeroelastic::CoupledSection;
-use crate::bridge::Bridge;
+use crate::aerodynamics::{Transfer, TransferMatrix};
+use crate::bridge::{Bridge, BridgeMode, Node};
 use crate::error::{Error, Result};
-use crate::state_space::{ValueAt, secant};
+use crate::flutter::{CriticalPoint, ModeRatio, modal_shape};
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
-
-/// First step of the secant, its longest, and the last, over the speed.
-const FIRST_STEP: f64 = 1e-3;
-const LONGEST_STEP: f64 = 0.1;
-const SETTLED: f64 = 1e-9;
-const MOST_STEPS: usize = 30;
 
 /// A mode in the motion at an onset.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -82,90 +69,11 @@ pub fn motion_at_onset(
     })
 }
 
-/// The same in mass-normalised modal coordinates.
-fn modal_shape(
-    bridge: &Bridge,
-    forces: &dyn Transfer,
-    at: &CriticalPoint,
-) -> Result<DVector<Complex<f64>>> {
-    let problem = StructureInWind {
-        structure: &bridge.structure(),
-        model: forces,
-    };
-    problem.shape(at.speed_m_s, at.omega(bridge.width_m()))
-}
-
-/// An onset from which those of bridges nearby are found without a search: by the mode that flutters, followed by its shape.
-#[derive(Debug, Clone)]
-pub struct NearbyOnset {
-    /// Wind speed, m/s.
-    pub speed_m_s: f64,
-    lambda: Complex<f64>,
-    shape: DVector<Complex<f64>>,
-}
-
-impl NearbyOnset {
-    /// Starts from the onset `at` of `bridge`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
-    /// motion.
-    pub fn new(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
-        Ok(Self {
-            speed_m_s: at.speed_m_s,
-            lambda: Complex::new(0.0, at.omega(bridge.width_m())),
-            shape: modal_shape(bridge, &bridge.forces(), at)?,
-        })
-    }
-
-    /// Starts from a mode at a wind speed, m/s, where it need not be critical.
-    pub(super) fn of_mode(speed_m_s: f64, mode: &Mode) -> Self {
-        Self {
-            speed_m_s,
-            lambda: mode.lambda,
-            shape: mode.shape.clone(),
-        }
-    }
-
-    /// Its frequency, Hz.
-    pub fn frequency_hz(&self) -> f64 {
-        self.lambda.im / TAU
-    }
-
-    /// Whether this is the motion of `other`, hardly changed.
-    pub fn resembles(&self, other: &Self) -> bool {
-        assurance(&self.shape, &other.shape) >= MIN_ASSURANCE
-    }
-
-    /// The onset of the same mode of another bridge, by the secant, from which it goes on; `None` where the mode cannot be followed
-    /// that far.
-    pub fn follow(&self, other: &CoupledSection) -> Option<Self> {
-        let problem = ModalCharacteristic::new(other)?;
-        let mut known = (self.lambda, self.shape.clone());
-        let mut growth = |speed: f64| -> Option<f64> {
-            known = problem.at(speed).solve(known.0, &known.1, None)?;
-            Some(known.0.re)
-        };
-        let (from, beside) = (self.speed_m_s, self.speed_m_s * (1.0 + FIRST_STEP));
-        let start = ValueAt::new(from, growth(from)?);
-        // no further than a tenth at once: beyond, it may be another mode
-        let ends = [LONGEST_STEP, SETTLED];
-        let found = secant::<()>(start, beside, ends, MOST_STEPS, |speed| Ok(growth(speed)));
-        let speed_m_s = found.ok()??;
-        let (lambda, shape) = known;
-        Some(Self {
-            speed_m_s,
-            lambda,
-            shape,
-        })
-    }
-}
-
 fn shares(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<ModeShare> {
     let total = shape.norm_squared();
     let of_modes = shape.rows(0, bridge.modes.len());
     let largest = of_modes[of_modes.icamax()];
-    let share = |(mode, z): (&crate::bridge::BridgeMode, &Complex<f64>)| ModeShare {
+    let share = |(mode, z): (&BridgeMode, &Complex<f64>)| ModeShare {
         mode: mode.number,
         frequency_hz: mode.frequency_hz,
         energy_share: z.norm_sqr() / total,
@@ -190,7 +98,7 @@ fn nodes(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<NodeMotion> {
     let in_metres = all.iter().flat_map(|[y, x, t]| [*y, *x, t * half_width]);
     let greater = |a: Complex<f64>, b: Complex<f64>| if b.norm() > a.norm() { b } else { a };
     let greatest = in_metres.fold(Complex::default(), greater);
-    let motion = |(node, z): (&crate::bridge::Node, &[Complex<f64>; 3])| NodeMotion {
+    let motion = |(node, z): (&Node, &[Complex<f64>; 3])| NodeMotion {
         node: node.name.clone(),
         along_m: node.along_m,
         motion: z.map(|z| z / greatest).map(|z| [z.re, z.im]),
@@ -208,7 +116,7 @@ fn nodes(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<NodeMotion> {
 pub fn static_deflection(
     bridge: &Bridge,
     coefficients: &[[f64; 3]],
-    static_forces: &crate::aerodynamics::TransferMatrix,
+    static_forces: &TransferMatrix,
     speed_m_s: f64,
 ) -> Result<Vec<[f64; 3]>> {
     let s = bridge.structure();
