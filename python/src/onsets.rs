@@ -129,18 +129,12 @@ pub fn onsets(
         PyArray1::from_vec(py, all).unbind()
     };
     let numbers = |pick: fn(&SweptOnset) -> f64| {
-        let number = |outcome: &SweepOutcome| match outcome {
-            SweepOutcome::Onset(at) | SweepOutcome::UnstableAtOrBelow(at) => pick(at),
-            _ => f64::NAN,
-        };
+        let number = |outcome: &SweepOutcome| outcome.onset().map_or(f64::NAN, pick);
         let all = found.iter().map(number).collect();
         PyArray1::from_vec(py, all).unbind()
     };
     Ok(Onsets {
-        judged: are(&|outcome| match outcome {
-            SweepOutcome::Stable { judged_to_m_s } => *judged_to_m_s >= limit,
-            outcome => *outcome != SweepOutcome::Unresolved,
-        }),
+        judged: are(&|outcome| outcome.is_judged_to(limit)),
         searched_to_m_s: limit,
         tested: are(&|o| matches!(o, SweepOutcome::Onset(at) if at.in_tested_range)),
         unstable: are(&|o| matches!(o, SweepOutcome::UnstableAtOrBelow(_))),

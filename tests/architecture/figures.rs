@@ -129,8 +129,8 @@ fn the_house_does_not_grow() {
     let (found, whole) = (figures(), of_every_file());
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 83_091),
-        ("code lines of the core", core, 13_367),
+        ("code lines", found.line_count(), 83_093),
+        ("code lines of the core", core, 13_377),
         ("types", found.type_count(), 835),
         ("names of several types", found.names_used_twice(), 0),
         (

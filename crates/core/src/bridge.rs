@@ -301,20 +301,19 @@ impl Bridge {
     /// counts with half the width; `None` of a shape that is zero everywhere.
     pub fn main_motion(&self, mode: &BridgeMode) -> Option<usize> {
         let scale = [1.0, 1.0, 0.5 * self.width_m()];
-        let part = |i: usize| -> f64 {
+        let parts: [f64; 3] = std::array::from_fn(|i| {
             let nodes = self.nodes.iter().zip(&mode.shape);
             let squares = nodes.map(|(node, s)| node.length_m * (scale[i] * s[i]).powi(2));
             squares.sum()
-        };
-        let parts = [part(0), part(1), part(2)];
+        });
         let moving = (0..3).filter(|i| parts[*i] > 0.0);
         moving.max_by(|a, b| parts[*a].total_cmp(&parts[*b]))
     }
 
     /// Its name; `none` where there is none.
     pub fn main_motion_name(&self, mode: &BridgeMode) -> &'static str {
-        let motion = self.main_motion(mode);
-        motion.map_or("none", |i| Dof::THREE[i].name())
+        self.main_motion(mode)
+            .map_or("none", |i| Dof::THREE[i].name())
     }
 }
 

@@ -51,12 +51,7 @@ impl<'a> NonlinearSection<'a> {
         speed_m_s: f64,
         gusts: &'a GustSeries,
     ) -> Result<Self> {
-        ensure(
-            theory.dofs() == structure.dofs,
-            "nonlinear section",
-            format_args!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
-            Dof::names(theory.dofs()),
-        )?;
+        theory.check_dofs("nonlinear section", &structure.dofs)?;
         let inverse_mass = structure.mass.clone().try_inverse().ok_or_else(|| {
             Error::Numerical("nonlinear section: a degree of freedom has no mass".into())
         })?;

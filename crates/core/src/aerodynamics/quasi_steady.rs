@@ -63,6 +63,15 @@ impl QuasiSteady {
         &self.dofs
     }
 
+    /// Refuses `what` of other degrees of freedom.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::error::Error::Input) naming both.
+    pub fn check_dofs(&self, what: &str, dofs: &[Dof]) -> Result<()> {
+        let expected = format_args!("quasi-steady forces of {}", Dof::names(dofs));
+        ensure(self.dofs == dofs, what, expected, Dof::names(&self.dofs))
+    }
+
     /// Forces `F/(½ρB)` and `M/(½ρB²)` (m²/s²) into the first n places, at the rotation `θ` (rad), in what the deck feels of the
     /// wind with its gusts and its own velocity: `V + u − ẋ`, `w − ẏ` and `B θ̇`, m/s.
     pub fn specific_forces(

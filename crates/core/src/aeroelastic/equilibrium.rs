@@ -145,12 +145,7 @@ struct Branch<'a> {
 
 impl<'a> Branch<'a> {
     fn new(structure: &'a Structure, theory: &'a QuasiSteady) -> Result<Self> {
-        ensure(
-            theory.dofs() == structure.dofs,
-            "static equilibrium",
-            format_args!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
-            Dof::names(theory.dofs()),
-        )?;
+        theory.check_dofs("static equilibrium", &structure.dofs)?;
         let mut flexibility = structure.stiffness.clone().try_inverse().ok_or_else(|| {
             Error::Numerical("static equilibrium: a degree of freedom has no stiffness".into())
         })?;

@@ -28,11 +28,8 @@ pub fn modal_shape(
     forces: &dyn Transfer,
     at: &CriticalPoint,
 ) -> Result<DVector<Complex<f64>>> {
-    let problem = StructureInWind {
-        structure: &bridge.structure(),
-        model: forces,
-    };
-    problem.shape(at.speed_m_s, at.omega(bridge.width_m()))
+    let (structure, model) = (&bridge.structure(), forces);
+    StructureInWind { structure, model }.shape(at.speed_m_s, at.omega(bridge.width_m()))
 }
 
 /// An onset from which those of bridges nearby are found without a search: by the mode that flutters, followed by its shape.

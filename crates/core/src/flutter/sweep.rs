@@ -53,6 +53,25 @@ pub enum SweepOutcome {
     Unresolved,
 }
 
+impl SweepOutcome {
+    /// The onset, or the start that grows already.
+    pub fn onset(&self) -> Option<&SweptOnset> {
+        match self {
+            Self::Onset(at) | Self::UnstableAtOrBelow(at) => Some(at),
+            Self::Stable { .. } | Self::Unresolved => None,
+        }
+    }
+
+    /// Whether it answers for every wind speed up to this one, m/s: with an onset, or with none as far as that.
+    pub fn is_judged_to(&self, speed_m_s: f64) -> bool {
+        match self {
+            Self::Stable { judged_to_m_s } => *judged_to_m_s >= speed_m_s,
+            Self::Onset(_) | Self::UnstableAtOrBelow(_) => true,
+            Self::Unresolved => false,
+        }
+    }
+}
+
 /// The onset of one sample; chosen among all crossings as [`find_onset`](super::find_onset) does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweptOnset {

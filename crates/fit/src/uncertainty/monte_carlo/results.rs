@@ -236,10 +236,7 @@ impl Tally {
         self.onsets.sort_unstable_by(f64::total_cmp);
         self.starts.sort_unstable_by(f64::total_cmp);
         let nominal_or_below = matches!(nominal, SweepOutcome::UnstableAtOrBelow(_));
-        let nominal_m_s = match nominal {
-            SweepOutcome::Onset(o) | SweepOutcome::UnstableAtOrBelow(o) => Some(o.speed_m_s),
-            SweepOutcome::Stable { .. } | SweepOutcome::Unresolved => None,
-        };
+        let nominal_m_s = nominal.onset().map(|at| at.speed_m_s);
         let drawn = self.len();
         let open = || self.stable.iter().copied().filter(|v| *v < speed_max_m_s);
         let unsafe_speeds = joined(&self.onsets, self.starts.iter().copied());
