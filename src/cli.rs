@@ -66,6 +66,9 @@ use std::process::ExitCode;
 /// Exit code for wrong input, as clap uses it for wrong arguments.
 const WRONG_INPUT: u8 = 2;
 
+/// Above the options that every command has.
+const OF_ALL: &str = "Options of all commands";
+
 /// What each exit code means.
 const EXIT_CODES: [(u8, &str); 5] = [
     (0, "done; where a wind speed is required, it is met"),
@@ -86,22 +89,22 @@ const EXIT_CODES: [(u8, &str); 5] = [
 #[command(name = "aerodeck", version, about, propagate_version = true)]
 struct Cli {
     /// Print the result as JSON on standard output, for machines.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = OF_ALL)]
     json: bool,
     /// Print the JSON Schema of what `--json` prints, and do nothing else.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = OF_ALL)]
     json_schema: bool,
     /// No progress bars.
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, help_heading = OF_ALL)]
     quiet: bool,
     /// The whole account of `study`, `demo` and `bridge flutter`; the report has all of it in any case.
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, help_heading = OF_ALL)]
     verbose: bool,
     /// Neither draw nor write figures.
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = OF_ALL)]
     no_figures: bool,
     /// Figures as PNG images too (in programs built with `--features png`).
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = OF_ALL)]
     png: bool,
     #[command(subcommand)]
     command: Command,

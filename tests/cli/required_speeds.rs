@@ -38,6 +38,8 @@ fn a_search_that_ends_early_is_no_answer() {
     // an interval of 15.2 to 36.8 m/s, seen or not
     let wide = judged(&[required(12.9), searched_to(74.0)]);
     assert_eq!(wide.0, 0, "{:#}", wide.1);
+    let says = wide.1["headline"].as_str().unwrap();
+    assert!(says.contains("onset 26.0 m/s ± 41 %, 15.2–36.8"), "{says}");
     assert_eq!(judged(&[required(12.9), searched_to(12.9)]), wide);
     // just above the onset of 26.0
     let (_, just) = judged(&[searched_to(26.1)]);

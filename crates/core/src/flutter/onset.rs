@@ -7,6 +7,9 @@ use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+/// Half of an interval over the speed above which a headline says how wide it is: its first number alone would mislead.
+const WIDE: f64 = 0.1;
+
 /// A flutter onset.
 ///
 /// ```
@@ -266,7 +269,7 @@ impl Onset {
     }
 
     /// The answer in one line: speed, interval, and whether the data reach it, such as
-    /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`.
+    /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`; of a wide interval how wide it is, `26.0 m/s ± 41 %, 15.2–36.8`.
     pub fn headline(&self) -> String {
         let speed = match self.headline_m_s() {
             Ok(speed) => speed,
@@ -284,7 +287,16 @@ impl Onset {
             (None, Some(false)) => ", OUTSIDE the tested range".to_owned(),
             (None, None) => String::new(),
         };
-        format!("flutter onset {} m/s{interval}{tested}", shown_m_s(speed))
+        let ends = self.interval.ends().filter(|_| !spread);
+        let half = ends.map_or(0.0, |(low, high)| 0.5 * (high - low) / speed);
+        let wide = match half > WIDE {
+            true => format!(" ± {:.0} %", 100.0 * half),
+            false => String::new(),
+        };
+        format!(
+            "flutter onset {} m/s{wide}{interval}{tested}",
+            shown_m_s(speed)
+        )
     }
 
     /// Heave over rotation in words.
