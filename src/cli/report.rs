@@ -28,6 +28,9 @@ use std::ffi::OsStr;
 use std::path::Path;
 use variables::variables_of;
 
+/// What an FMU says of itself.
+const DESCRIPTION: &str = "modelDescription.xml";
+
 /// Runs the command.
 pub(super) fn run(folder: &Path, pdf: bool) -> Result<Answer> {
     let page = page_of(folder)?;
@@ -89,12 +92,12 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     let path = folder.join(FMU_FILE);
     let fmu = path.exists().then(|| Fmu::open(&path)).transpose()?;
     match &fmu {
-        Some(fmu) if is_of_this_run(fmu, &summary) => {
+        Some(fmu) if summary.sha1.get(DESCRIPTION) == Some(&description_digest(fmu)?) => {
             page.fmu = FMU_FILE.to_owned();
             page.variables = variables_of(fmu);
         }
         Some(_) => page.whose.push_str(
-            " The FMU beside this page is another one, with another model, and no part of it.",
+            " The FMU beside this page is another one, of another model or with other options, and no part of it.",
         ),
         None => {}
     }
@@ -119,18 +122,33 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     rendered(&page)
 }
 
-/// Whether an FMU holds the model of the run: the page in it is written last, so that no digest of the whole file is known.
-fn is_of_this_run(fmu: &Fmu, summary: &Summary) -> bool {
-    let held = std::fs::read(fmu.folder().join("resources").join(MODEL_FILE));
-    let held = held.map_or_else(|_| String::new(), |bytes| digest(&bytes));
-    summary.sha1.get(MODEL_FILE).is_none_or(|run| *run == held)
+/// Digest of an FMU's description, whose identity follows from model, options and variables. That of the whole file is not known: the page
+/// in it is written last.
+fn description_digest(fmu: &Fmu) -> Result<String> {
+    let path = fmu.folder().join(DESCRIPTION);
+    let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, e))?;
+    Ok(digest(&bytes))
 }
 
-/// SHA-1 of those files in a folder of results that its page takes up, by name. The FMU is none of them: it is closed with the page in it.
+/// SHA-1 of what a page takes up of the results of a run that are staged in `folder`.
+///
+/// # Errors
+/// Those of reading them.
+pub(super) fn digests_of_run(folder: &Path) -> Result<BTreeMap<String, String>> {
+    let mut found = digests(folder)?;
+    let path = folder.join(FMU_FILE);
+    if path.is_file() {
+        let of_fmu = description_digest(&Fmu::open(path)?)?;
+        found.insert(DESCRIPTION.to_owned(), of_fmu);
+    }
+    Ok(found)
+}
+
+/// SHA-1 of those files in a folder of results that its page takes up as they are, by name.
 ///
 /// # Errors
 /// [`Error::Io`] for a folder or a file that cannot be read.
-pub(super) fn digests(folder: &Path) -> Result<BTreeMap<String, String>> {
+fn digests(folder: &Path) -> Result<BTreeMap<String, String>> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))? {
         let path = entry.map_err(|e| Error::io(folder, e))?.path();

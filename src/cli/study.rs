@@ -322,7 +322,7 @@ impl StudyStages<'_> {
         self.out.stage(SUMMARY)?;
         summary.files = self.out.targets();
         summary.files.sort();
-        summary.sha1 = report::digests(self.out.staging())?;
+        summary.sha1 = report::digests_of_run(self.out.staging())?;
         self.out.write_json(SUMMARY, "summary", &summary)?;
         report::leave(&mut self.out)?;
         let written = self.out.commit()?;

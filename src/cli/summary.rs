@@ -24,7 +24,7 @@ pub(crate) struct Summary {
     pub study_file: String,
     /// Its text as it was run.
     pub study_text: String,
-    /// SHA-1 of the files that its page takes up, by name.
+    /// SHA-1 of the files that its page takes up, by name; of the FMU, of the description in it.
     pub sha1: BTreeMap<String, String>,
     /// The model that the verdict is about.
     pub model: String,

@@ -400,6 +400,21 @@ fn a_study_that_was_changed_since_the_run_has_no_report() {
     let page = || fs::read_to_string(at.join("d/report.html")).unwrap();
     let said = "The FMU beside this page is another one";
     assert!(page().contains(said) && !page().contains("<td>deck_section.fmu"));
+    // and of its own model, but forces alone
+    let to = "d/deck_section.fmu";
+    let forces = [
+        "fmu",
+        "export",
+        "d/model.json",
+        "--kind",
+        "force",
+        "--force",
+        "--out",
+        to,
+    ];
+    succeeds(at, &forces);
+    succeeds(at, &["report", "d"]);
+    assert!(page().contains(said) && !page().contains("<td>deck_section.fmu"));
     fs::write(own, kept).unwrap();
     succeeds(at, &["report", "d"]);
     assert!(!page().contains(said));
