@@ -46,9 +46,9 @@ pub(crate) use wind::{
 };
 pub use wind::{CoefficientsBlock, SectionBuffetingBlock, example_wind_study_text};
 
-use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
 use crate::error::{Error, Place, Result, ensure, finite, of_schema, positive};
+use crate::files::derivatives::StatedConvention;
 use crate::files::report_block::ReportBlock;
 use crate::files::toml_lines;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};

@@ -5,11 +5,11 @@ use crate::convert::{
 };
 use crate::error::{raised, warned, wrong};
 use aerodeck::aerodynamics::derivatives::notation::{
-    Argument, Axes, Convention, ExpressedPoint, Notation, StatedConvention,
+    Argument, Axes, Convention, ExpressedPoint, Notation,
 };
 use aerodeck::aerodynamics::derivatives::{DerivativeTable, Missing, TableHeader};
 use aerodeck::files::derivatives::{
-    ReadOptions, embedded, parse_csv_in, read_table_with, write_csv, write_csv_in,
+    ReadOptions, StatedConvention, embedded, parse_csv_in, read_table_with, write_csv, write_csv_in,
 };
 use aerodeck::plausibility::{Finding, of_table};
 use pyo3::prelude::*;

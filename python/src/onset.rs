@@ -114,10 +114,8 @@ impl Onset {
                 answer.state = "onset".into();
                 answer.in_tested_range = onset.in_tested_range;
                 match &onset.interval {
-                    OnsetInterval::Known {
-                        low_m_s, high_m_s, ..
-                    } => {
-                        answer.interval = Some((*low_m_s, *high_m_s));
+                    OnsetInterval::Known(error) => {
+                        answer.interval = Some((error.low_m_s, error.high_m_s));
                     }
                     OnsetInterval::Undetermined { reason, .. } | OnsetInterval::None { reason } => {
                         answer.no_interval = Some(reason.clone());

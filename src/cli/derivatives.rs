@@ -4,13 +4,12 @@ use super::figures;
 use super::vocabulary::{Answer, OutputDir, folder_of};
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedDerivative, ExpressedPoint, ExpressedTable, Notation,
-    StatedConvention,
 };
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
 use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::{
-    ReadOptions, embedded, file_and_sheet, is_table_file, named_sheet, read_table_with,
-    template_bytes, workbook_bytes_in, write_csv_in,
+    ReadOptions, StatedConvention, embedded, file_and_sheet, is_table_file, named_sheet,
+    read_table_with, template_bytes, workbook_bytes_in, write_csv_in,
 };
 use crate::plausibility::{of_table, sentences};
 use crate::report::axes_sketch;

@@ -1,9 +1,9 @@
 //! `aerodeck new`: a commented study to begin with.
 
 use super::vocabulary::{Answer, OutputDir, Written, folder_of, list};
-use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation, StatedConvention};
+use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation};
 use crate::error::{Error, Result};
-use crate::files::derivatives::{is_table_file, named_sheet};
+use crate::files::derivatives::{StatedConvention, is_table_file, named_sheet};
 use crate::section::{Rotation, STANDARD_AIR_DENSITY_KG_M3, SectionModel, Translation};
 use crate::study::bridge::new_bridge_text;
 use crate::study::{Deck, Study, example_wind_study_text, new_study_text};
@@ -307,7 +307,7 @@ fn asked<T>(
 #[cfg(test)]
 mod tests {
     use super::{ask, stated_in};
-    use crate::aerodynamics::derivatives::notation::StatedConvention;
+    use crate::files::derivatives::StatedConvention;
     use crate::study::{Study, new_study_text};
 
     #[test]

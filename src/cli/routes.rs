@@ -2,9 +2,10 @@
 
 use super::text::interval;
 use super::vocabulary::{TextTable, speed_or};
-use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
+use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval};
 use crate::section::Dof;
 use crate::study::{Route, RouteTable};
+use crate::verdict::SanityLines;
 use std::fmt::Write as _;
 
 /// The table, the handbook lines, the cards and what was left out.
@@ -146,9 +147,13 @@ fn found(o: &Onset, route: &Route) -> String {
         None => writeln!(text, " (exact at every K)"),
     };
     let _ = match &o.interval {
-        OnsetInterval::Known { parts, .. } => {
+        OnsetInterval::Known(error) => {
             let ends = interval(&o.interval);
-            writeln!(text, "  95 % interval {ends} m/s\n  {}", parts.explain())
+            writeln!(
+                text,
+                "  95 % interval {ends} m/s\n  {}",
+                error.parts.explain()
+            )
         }
         OnsetInterval::Spread { of, .. } => {
             let ends = interval(&o.interval);

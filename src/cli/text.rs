@@ -279,8 +279,8 @@ fn without_interval(o: &Onset) -> String {
             format!("in brackets, no 95 % interval: {place}: {of}\n")
         }
         OnsetInterval::Undetermined { reason, .. } => format!("{place}: {reason}\n"),
-        OnsetInterval::Known { parts, .. } => {
-            format!("standard error: {place}: {}\n", parts.explain())
+        OnsetInterval::Known(error) => {
+            format!("standard error: {place}: {}\n", error.parts.explain())
         }
     }
 }
@@ -291,9 +291,7 @@ pub(crate) fn interval(of: &OnsetInterval) -> String {
         OnsetInterval::Spread {
             low_m_s, high_m_s, ..
         } => format!("[{low_m_s:.3} – {high_m_s:.3}]"),
-        OnsetInterval::Known {
-            low_m_s, high_m_s, ..
-        } => format!("{low_m_s:.3} – {high_m_s:.3}"),
+        OnsetInterval::Known(error) => format!("{:.3} – {:.3}", error.low_m_s, error.high_m_s),
         OnsetInterval::Undetermined { .. } => "not determined".to_owned(),
         OnsetInterval::None { .. } => "none".to_owned(),
     }

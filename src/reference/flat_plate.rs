@@ -9,10 +9,11 @@ use crate::buffeting::{
 use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, ModeRatio, Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset,
-    impedance, pk_onset, quasi_pk_mode, sanity_lines,
+    impedance, pk_onset, quasi_pk_mode,
 };
 use crate::section::{Rotation, SectionModel, Translation};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::verdict::sanity_lines;
 use std::f64::consts::{PI, TAU};
 
 /// Reduced frequencies far on both sides of any onset here.

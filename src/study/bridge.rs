@@ -25,7 +25,7 @@ pub(crate) use forces::block_table;
 pub use motion::{BridgeMotion, ModeShare, NodeMotion, motion_at_onset, static_deflection};
 pub use parts::SectionForcePart;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
-pub use similarity::{Similarity, similarities};
+pub use similarity::{Similarity, equivalent_section, similarities};
 
 use super::KnownUncertainty;
 use super::speeds::{SEARCHED_AT_LEAST, reaching};

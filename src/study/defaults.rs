@@ -1,6 +1,6 @@
 //! The studies that come with the program, as text.
 
-use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::files::derivatives::StatedConvention;
 
 /// Text of the demo's study file.
 pub fn demo_study_text() -> &'static str {

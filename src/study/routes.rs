@@ -13,13 +13,14 @@ use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Realization, Tra
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
-    FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
-    determinant_onset, divergence_by_eigenvalues, divergence_speed, divergence_with_forces,
-    find_onset, pk_curves, pk_onset, sanity_lines, trace_modes,
+    FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, classify, determinant_onset,
+    divergence_by_eigenvalues, divergence_speed, divergence_with_forces, find_onset, pk_curves,
+    pk_onset, trace_modes,
 };
 use crate::section::{Dof, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::verdict::{SanityLines, sanity_lines};
 use limit::{limit_onset, low_frequency_limit, steady_flat_plate};
 use serde::Serialize;
 

@@ -9,13 +9,12 @@ pub(crate) use quasi_steady::{
 };
 
 use super::{FlutterBlock, SpeedRange, Study, is_default};
-use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, Interpolation};
 use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
 use crate::buffeting::{TimePlan, Turbulence, check_plan};
 use crate::error::{Error, Result, ensure, finite, of_schema, positive};
 use crate::files::coefficients::named_coefficients;
-use crate::files::derivatives::named_table;
+use crate::files::derivatives::{StatedConvention, named_table};
 use crate::files::toml_lines;
 use crate::plausibility::{Finding, of_coefficients, of_section};
 use crate::section::{Dof, SectionModel};

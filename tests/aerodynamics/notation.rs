@@ -6,6 +6,7 @@ use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::aerodynamics::derivatives::notation::*;
 use aerodeck::aerodynamics::derivatives::{Derivative, Part};
 use aerodeck::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};
+use aerodeck::files::derivatives::StatedConvention;
 use aerodeck::files::derivatives::{ReadOptions, parse_csv_in, write_csv_in};
 use aerodeck::section::Dof;
 use aerodeck::units::ReducedFrequency;

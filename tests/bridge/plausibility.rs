@@ -1,9 +1,10 @@
 //! Every slip of a bridge has its sentence, and the Langenuen bridge has none.
 
 use aerodeck::aerodynamics::FlatPlate;
+use aerodeck::bridge::StripGroup;
 use aerodeck::bridge::{Bridge, BridgeMode, Node};
 use aerodeck::bridge::{DampedPoint, Dampers, MassDamper, ViscousLink};
-use aerodeck::bridge::{StripGroup, tributary_lengths};
+use aerodeck::files::bridge::tributary_lengths;
 use aerodeck::files::bridge::{BridgeModes, embedded};
 use aerodeck::plausibility::{
     Finding, FindingKind, FindingSeverity, of_bridge, of_modes, of_modes_left_out, of_profile,

@@ -368,14 +368,11 @@ fn scatter_as_measured_is_the_interval() {
     let scattered = study
         .scattered_onset(&found, &measured, &|_, _| ())
         .unwrap();
-    let OnsetInterval::Known {
-        standard_error_m_s,
-        degrees_of_freedom,
-        ..
-    } = study.onset_interval(&found).unwrap()
-    else {
+    let OnsetInterval::Known(known) = study.onset_interval(&found).unwrap() else {
         panic!("no interval");
     };
+    let (standard_error_m_s, degrees_of_freedom) =
+        (known.standard_error_m_s, known.degrees_of_freedom);
     println!(
         "{scattered:?} beside a standard error of {standard_error_m_s} m/s, {degrees_of_freedom}"
     );

@@ -6,11 +6,12 @@ use crate::bridges;
 use crate::entry::Job;
 use aerodeck::aerodynamics::RationalModel;
 use aerodeck::aeroelastic::CoupledSection;
-use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, tributary_lengths};
+use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup};
 use aerodeck::buffeting::{
     BuffetingProblem, Coherence, Gust, GustSpectrum, SpectrumShape, Turbulence, span_record,
     turbulence_field,
 };
+use aerodeck::files::bridge::tributary_lengths;
 use aerodeck::flutter::trace_modes;
 use aerodeck::response::{Inputs, Stepper};
 use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy, bridge_flutter};

@@ -16,16 +16,14 @@
 mod banks;
 mod damped;
 mod dampers;
-mod gusts;
 mod modal;
 
 pub use dampers::{DampedPoint, Dampers, MassDamper, ViscousLink};
-pub use gusts::GustChannels;
 pub use modal::ModalForces;
 
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, counted, ensure, finite, non_negative, positive};
-use crate::section::{Dof, Rotation, SectionModel, Translation};
+use crate::section::{Dof, SectionModel};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -215,53 +213,6 @@ impl Bridge {
         })
     }
 
-    /// The section that a study of two modes would take: the first mode that moves mainly up and down, the first that mainly
-    /// turns and, where `dofs` has it, the first that moves mainly sideways, each with its mass per length `M/∫φ²`. A motion without a
-    /// mode of its own takes that of another, with the mass or inertia of a plate of one thickness, `I = mB²/12`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when nothing moves.
-    pub fn equivalent_section(&self, dofs: &[Dof]) -> Result<SectionModel> {
-        let own = |dof: Dof| {
-            let (i, mut modes) = (dof as usize, self.modes.iter());
-            let mode = modes.find(|m| self.main_motion(m) == Some(i))?;
-            let nodes = self.nodes.iter().zip(&mode.shape);
-            let square: f64 = nodes.map(|(n, s)| n.length_m * s[i] * s[i]).sum();
-            let inertia = mode.generalised_mass / square;
-            Some((inertia, mode.frequency_hz, mode.damping_ratio))
-        };
-        // mass per moment of inertia of a plate of one thickness
-        let per_inertia = 12.0 / (self.width_m() * self.width_m());
-        let support = |dof: Dof| {
-            let other = |of: Dof| {
-                let (inertia, hertz, damping) = own(of)?;
-                let factor = match (of, dof) {
-                    (Dof::Torsion, Dof::Vertical | Dof::Lateral) => per_inertia,
-                    (Dof::Vertical | Dof::Lateral, Dof::Torsion) => 1.0 / per_inertia,
-                    _ => 1.0,
-                };
-                Some((inertia * factor, hertz, damping))
-            };
-            let found = own(dof).or_else(|| Dof::THREE.into_iter().find_map(other));
-            found.ok_or_else(|| Error::input("modes", "modes that move", "none"))
-        };
-        let translation = |dof: Dof| -> Result<Translation> {
-            let (mass, hertz, damping) = support(dof)?;
-            Ok(Translation::new(mass, hertz, damping))
-        };
-        let (inertia, hertz, damping) = support(Dof::Torsion)?;
-        let mut section = SectionModel::two_dof(
-            self.width_m(),
-            self.air_density_kg_m3,
-            translation(Dof::Vertical)?,
-            Rotation::new(inertia, hertz, damping),
-        );
-        if dofs.contains(&Dof::Lateral) {
-            section.lateral = Some(translation(Dof::Lateral)?);
-        }
-        Ok(section)
-    }
-
     fn check_groups(&self) -> Result<()> {
         let has_groups = !self.groups.is_empty();
         ensure(has_groups, "section", "at least one section", "none")?;
@@ -315,14 +266,6 @@ impl Bridge {
         self.main_motion(mode)
             .map_or("none", |i| Dof::THREE[i].name())
     }
-}
-
-/// Tributary lengths by the trapezoidal rule: half the way to each neighbour. One node alone has none.
-pub fn tributary_lengths(along_m: &[f64]) -> Vec<f64> {
-    let last = along_m.len().saturating_sub(1);
-    (0..along_m.len())
-        .map(|i| 0.5 * (along_m[(i + 1).min(last)] - along_m[i.saturating_sub(1)]))
-        .collect()
 }
 
 fn check_nodes(nodes: &[Node]) -> Result<()> {

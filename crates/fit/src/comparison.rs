@@ -89,16 +89,6 @@ impl<'a> SignalPair<'a> {
         })
     }
 
-    /// Reference signal `X₁`.
-    pub const fn reference(&self) -> &'a [f64] {
-        self.reference
-    }
-
-    /// Compared signal `X₂`.
-    pub const fn compared(&self) -> &'a [f64] {
-        self.compared
-    }
-
     /// Time between samples, s.
     pub const fn time_step_s(&self) -> f64 {
         self.time_step_s
@@ -147,7 +137,7 @@ mod tests {
     fn odd_length_loses_its_last_sample() {
         let x = [1.0, 2.0, 3.0];
         let pair = SignalPair::new(&x, &x, 0.1).unwrap();
-        assert_eq!(pair.reference(), &[1.0, 2.0]);
+        assert_eq!(pair.reference, &[1.0, 2.0]);
         assert_eq!(pair.sample_count(), 2);
     }
 

@@ -23,6 +23,7 @@ mod evidence;
 mod judging;
 mod outcome;
 mod reasons;
+mod sanity;
 mod searched;
 mod sentences;
 mod words;
@@ -38,6 +39,7 @@ pub use evidence::{
     Reach, RequiredSpeed, UntestedPart, UntestedParts,
 };
 pub use outcome::{Below, Outcome};
+pub use sanity::{SanityLines, sanity_lines};
 
 use serde::{Deserialize, Serialize};
 

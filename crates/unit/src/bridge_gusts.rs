@@ -1,8 +1,9 @@
 //! Gusts that an exported bridge takes: as inputs of strips, and from a field in its archive.
 
 use crate::aerodynamics::RationalAdmittance;
-use crate::bridge::{Bridge, GustChannels};
+use crate::bridge::Bridge;
 use crate::error::{Error, Result, ensure, finite, positive};
+use crate::gust_channels::GustChannels;
 use serde::{Deserialize, Serialize};
 
 /// The file of the turbulence in `resources/`; an archive without it brings none of its own.

@@ -1,11 +1,12 @@
 //! What makes an exported unit a whole bridge: its modes, its strips, the nodes that an importer sees.
 
 use super::bridge_gusts::BridgeGusts;
+use super::gust_channels::GustChannels;
 use super::onset_bounds::OnsetBounds;
 use super::onset_start::OnsetStart;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
-use crate::bridge::{Bridge, BridgeMode, Dampers, GustChannels, Node, StripGroup};
+use crate::bridge::{Bridge, BridgeMode, Dampers, Node, StripGroup};
 use crate::error::{Error, Result, ensure, positive};
 use crate::response::Stepper;
 use crate::trained_model::Model;

@@ -20,6 +20,7 @@ pub mod fmi2;
 pub mod fmi3;
 pub mod force_options;
 pub mod groups;
+mod gust_channels;
 pub mod identity;
 pub mod instance;
 pub mod lifecycle;

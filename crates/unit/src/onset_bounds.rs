@@ -23,19 +23,12 @@ pub struct OnsetBounds {
 impl OnsetBounds {
     /// Those of an interval that is a statement of probability, also of one that leaves nearly everything open; `None` for any other.
     pub fn from_interval(interval: &OnsetInterval) -> Option<Self> {
-        match interval {
-            OnsetInterval::Known {
-                low_m_s, high_m_s, ..
-            }
-            | OnsetInterval::Undetermined {
-                low_m_s, high_m_s, ..
-            } => Some(Self {
-                low_m_s: low_m_s.max(0.0),
-                high_m_s: *high_m_s,
-                undetermined: interval.reason().map(str::to_owned),
-            }),
-            _ => None,
-        }
+        let error = interval.by_error()?;
+        Some(Self {
+            low_m_s: error.low_m_s.max(0.0),
+            high_m_s: error.high_m_s,
+            undetermined: interval.reason().map(str::to_owned),
+        })
     }
 
     /// Reads and checks the file.

@@ -3,13 +3,13 @@
 use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::force_options::{FORCE_FILE, ForceOptions, FurtherModel, StripsOfModel};
+use super::gust_channels::GustChannels;
 use super::identity;
 use super::location::{MODEL_FILE, beside, folder_of, own_binary, raw_folder, refused};
 use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
 use super::standard::each_once;
 use super::variables::VariableTable;
 use crate::aerodynamics::{GustForce, Transfer};
-use crate::bridge::GustChannels;
 use crate::error::{Error, Result, ensure};
 use crate::response::Stepper;
 use crate::trained_model::{Model, TrainedModel};

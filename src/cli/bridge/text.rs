@@ -122,13 +122,9 @@ fn table_against_model(results: &BridgeFlutter) -> Option<String> {
 
 fn interval(of: &OnsetInterval) -> String {
     match of {
-        OnsetInterval::Known {
-            low_m_s,
-            high_m_s,
-            standard_error_m_s,
-            ..
-        } => format!(
-            "95 % interval {low_m_s:.3} to {high_m_s:.3} m/s by the scatter of the tests and the form of the models (standard error {standard_error_m_s:.3} m/s)"
+        OnsetInterval::Known(error) => format!(
+            "95 % interval {:.3} to {:.3} m/s by the scatter of the tests and the form of the models (standard error {:.3} m/s)",
+            error.low_m_s, error.high_m_s, error.standard_error_m_s
         ),
         OnsetInterval::Spread {
             low_m_s,

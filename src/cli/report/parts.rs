@@ -15,9 +15,7 @@ use std::collections::BTreeMap;
 /// The ends of an interval that is known.
 pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
     match interval {
-        OnsetInterval::Known {
-            low_m_s, high_m_s, ..
-        } => Some((*low_m_s, *high_m_s)),
+        OnsetInterval::Known(error) => Some((error.low_m_s, error.high_m_s)),
         _ => None,
     }
 }
@@ -25,16 +23,14 @@ pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
 /// The onset in words, line by line.
 pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
     let interval = match &onset.interval {
-        OnsetInterval::Known {
-            low_m_s,
-            high_m_s,
-            standard_error_m_s,
-            degrees_of_freedom,
-            parts,
-        } => format!(
+        OnsetInterval::Known(error) => format!(
             // a tenth, since the width of the interval hangs on it where there are few
-            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s: {}; {degrees_of_freedom:.1} degrees of freedom)",
-            parts.explain(),
+            "{:.2} to {:.2} m/s (standard error {:.2} m/s: {}; {:.1} degrees of freedom)",
+            error.low_m_s,
+            error.high_m_s,
+            error.standard_error_m_s,
+            error.parts.explain(),
+            error.degrees_of_freedom,
         ),
         OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
             reason.clone()

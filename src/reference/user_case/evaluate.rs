@@ -9,12 +9,13 @@ use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::named_table;
 use crate::flutter::{
     FlutterSearch, Onset, OnsetMethod, OnsetSearch, determinant_onset, divergence_speed,
-    find_onset, pk_onset, quasi_pk_mode, sanity_lines, static_part,
+    find_onset, pk_onset, quasi_pk_mode, static_part,
 };
 use crate::reference::{CaseResult, Citation};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::verdict::sanity_lines;
 use std::f64::consts::TAU;
 
 impl UserCase {

@@ -3,6 +3,7 @@
 use super::BridgeStudy;
 use super::answers::coupled;
 use super::motion::{BridgeMotion, motion_at_onset};
+use super::similarity::equivalent_section;
 use crate::aerodynamics::{RationalAdmittance, Transfer as _};
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::Admittance;
@@ -100,7 +101,7 @@ impl BridgeStudy {
         Ok(TrainedModel {
             schema_version: model.schema_version(),
             name: self.file.name.clone(),
-            section: self.by_model.equivalent_section(model.dofs())?,
+            section: equivalent_section(&self.by_model, model.dofs())?,
             tested_range: section.tested.unwrap_or_else(everywhere),
             provenance: Provenance {
                 source: section.source.clone(),

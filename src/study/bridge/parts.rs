@@ -1,6 +1,7 @@
 //! A bridge in parts: its structure alone, the wind forces on its sections, and both as a system of FMUs.
 
 use super::export::STATIC_COEFFICIENTS;
+use super::similarity::equivalent_section;
 use crate::aerodynamics::{GustForce, RationalAdmittance, RationalModel, Transfer as _};
 use crate::bridge::StripGroup;
 use crate::error::{Error, Result, ensure};
@@ -79,7 +80,7 @@ impl BridgeStudy {
         let model = TrainedModel {
             name: format!("{}, structure", model.name),
             model: no_forces(),
-            section: self.by_model.equivalent_section(&Dof::TWO)?,
+            section: equivalent_section(&self.by_model, &Dof::TWO)?,
             provenance: Provenance {
                 source: "the modes of the bridge file".to_owned(),
                 licence: "as of the modes".to_owned(),
@@ -146,7 +147,7 @@ impl BridgeStudy {
                     source: format!("{STATIC_COEFFICIENTS} {}", block.name),
                 }
             });
-            let mut section = self.by_model.equivalent_section(&dofs)?;
+            let mut section = equivalent_section(&self.by_model, &dofs)?;
             section.width_m = block.width_m;
             let name = format!("{}, {}", self.file.name, block.name);
             let nodes = own.iter().flat_map(|g| &self.by_model.groups[*g].nodes);

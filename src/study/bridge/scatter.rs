@@ -6,7 +6,7 @@ use super::scaled_forces::Scaled;
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, ensure, non_negative};
-use crate::flutter::{NearbyOnset, Onset, OnsetInterval, find_onset_of_modes};
+use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
 use crate::numbered::{OnDone, numbered};
 use crate::signal::random_stream;
 use crate::uncertainty::{ModelDraws, SampledOnsets, StudentScale};
@@ -142,16 +142,10 @@ impl BridgeStudy {
         if scatter != DerivativeScatter::Measured {
             return Ok(None);
         }
-        match self.onset_interval(onset)? {
-            OnsetInterval::Known {
-                degrees_of_freedom, ..
-            }
-            | OnsetInterval::Undetermined {
-                degrees_of_freedom, ..
-            } => StudentScale::new(degrees_of_freedom).map(Some),
-            // stated without errors
-            OnsetInterval::Spread { .. } | OnsetInterval::None { .. } => Ok(None),
-        }
+        let interval = self.onset_interval(onset)?;
+        // none where speeds are stated without errors
+        let freedom = interval.by_error().map(|error| error.degrees_of_freedom);
+        freedom.map(StudentScale::new).transpose()
     }
 
     /// The covariances of the fits from which the forces of the sections are drawn; none for entries of the mean times factors.

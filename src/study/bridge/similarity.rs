@@ -1,7 +1,8 @@
 //! How alike two mode shapes are: what decides whether two modes may be treated as one section.
 
 use crate::bridge::{Bridge, BridgeMode};
-use crate::section::Dof;
+use crate::error::{Error, Result};
+use crate::section::{Dof, Rotation, SectionModel, Translation};
 use serde::Serialize;
 
 /// Similarity of a vertical and a torsional mode.
@@ -41,4 +42,46 @@ pub fn similarities(bridge: &Bridge) -> Vec<Similarity> {
     }
     all.sort_by(|a, b| b.similarity.total_cmp(&a.similarity));
     all
+}
+
+/// The section that a study of two modes would take: the first mode that moves mainly up and down, the first that mainly
+/// turns and, where `dofs` has it, the first that moves mainly sideways, each with its mass per length `M/∫φ²`. A motion without a
+/// mode of its own takes that of another, with the mass or inertia of a plate of one thickness, `I = mB²/12`.
+///
+/// # Errors
+/// [`Error::Input`] when nothing moves.
+pub fn equivalent_section(bridge: &Bridge, dofs: &[Dof]) -> Result<SectionModel> {
+    let width_m = bridge.width_m();
+    // mass per moment of inertia of a plate of one thickness
+    let per_inertia = 12.0 / (width_m * width_m);
+    let taken_from = |of: Dof, dof: Dof| {
+        let (i, mut modes) = (of as usize, bridge.modes.iter());
+        let mode = modes.find(|m| bridge.main_motion(m) == Some(i))?;
+        let nodes = bridge.nodes.iter().zip(&mode.shape);
+        let square: f64 = nodes.map(|(n, s)| n.length_m * s[i] * s[i]).sum();
+        let factor = match (of == Dof::Torsion, dof == Dof::Torsion) {
+            (true, false) => per_inertia,
+            (false, true) => 1.0 / per_inertia,
+            _ => 1.0,
+        };
+        let inertia = mode.generalised_mass / square * factor;
+        Some((inertia, mode.frequency_hz, mode.damping_ratio))
+    };
+    let support = |dof: Dof| {
+        let mut each = [dof].into_iter().chain(Dof::THREE);
+        let found = each.find_map(|of| taken_from(of, dof));
+        found.ok_or_else(|| Error::input("modes", "modes that move", "none"))
+    };
+    let translation = |dof: Dof| -> Result<Translation> {
+        let (mass, hertz, damping) = support(dof)?;
+        Ok(Translation::new(mass, hertz, damping))
+    };
+    let (inertia, hertz, damping) = support(Dof::Torsion)?;
+    let heave = translation(Dof::Vertical)?;
+    let twist = Rotation::new(inertia, hertz, damping);
+    let mut section = SectionModel::two_dof(width_m, bridge.air_density_kg_m3, heave, twist);
+    if dofs.contains(&Dof::Lateral) {
+        section.lateral = Some(translation(Dof::Lateral)?);
+    }
+    Ok(section)
 }

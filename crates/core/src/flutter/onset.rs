@@ -118,24 +118,28 @@ impl ErrorParts {
     }
 }
 
+/// 95 % interval of an onset speed by a standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ErrorInterval {
+    /// Lower end, m/s.
+    pub low_m_s: f64,
+    /// Upper end, m/s.
+    pub high_m_s: f64,
+    /// Standard error, m/s.
+    pub standard_error_m_s: f64,
+    /// Degrees of freedom of the standard error.
+    pub degrees_of_freedom: f64,
+    /// What it is made of.
+    #[serde(default)]
+    pub parts: ErrorParts,
+}
+
 /// 95 % interval of an onset speed, or why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum OnsetInterval {
     /// The scatter of the data, carried to the onset, and what the form of the model leaves open.
-    Known {
-        /// Lower end, m/s.
-        low_m_s: f64,
-        /// Upper end, m/s.
-        high_m_s: f64,
-        /// Standard error, m/s.
-        standard_error_m_s: f64,
-        /// Degrees of freedom of the standard error.
-        degrees_of_freedom: f64,
-        /// What it is made of.
-        #[serde(default)]
-        parts: ErrorParts,
-    },
+    Known(ErrorInterval),
     /// The speeds that several ways of reading the same data give, e.g. of interpolating a table: no statement of
     /// probability.
     Spread {
@@ -148,17 +152,9 @@ pub enum OnsetInterval {
     },
     /// The data leave the speed so far open that it is no result: the interval contains zero or is wider than the speed.
     Undetermined {
-        /// Lower end, m/s.
-        low_m_s: f64,
-        /// Upper end, m/s.
-        high_m_s: f64,
-        /// Standard error, m/s.
-        standard_error_m_s: f64,
-        /// Degrees of freedom of the standard error.
-        degrees_of_freedom: f64,
-        /// What it is made of.
-        #[serde(default)]
-        parts: ErrorParts,
+        /// The interval.
+        #[serde(flatten)]
+        error: ErrorInterval,
         /// Which of the two, in words.
         reason: String,
     },
@@ -177,15 +173,14 @@ impl OnsetInterval {
         degrees_of_freedom: f64,
         parts: ErrorParts,
     ) -> Self {
-        let standard_error_m_s = parts.standard_error_m_s();
         let (low_m_s, high_m_s) = (speed_m_s - half_width_m_s, speed_m_s + half_width_m_s);
-        let known = Self::Known {
+        let known = Self::Known(ErrorInterval {
             low_m_s,
             high_m_s,
-            standard_error_m_s,
+            standard_error_m_s: parts.standard_error_m_s(),
             degrees_of_freedom,
             parts,
-        };
+        });
         // an error that is not a number is neither, and leaves the speed undetermined
         let above_zero = low_m_s > 0.0;
         let narrow = 2.0 * half_width_m_s <= speed_m_s;
@@ -201,10 +196,8 @@ impl OnsetInterval {
     /// Lower and upper end, m/s, of the interval or the spread of a speed that is a result.
     pub fn ends(&self) -> Option<(f64, f64)> {
         match *self {
-            Self::Known {
-                low_m_s, high_m_s, ..
-            }
-            | Self::Spread {
+            Self::Known(error) => Some((error.low_m_s, error.high_m_s)),
+            Self::Spread {
                 low_m_s, high_m_s, ..
             } => Some((low_m_s, high_m_s)),
             Self::Undetermined { .. } | Self::None { .. } => None,
@@ -215,28 +208,18 @@ impl OnsetInterval {
     #[must_use]
     pub fn undetermined(self, why: String) -> Self {
         match self {
-            Self::Known {
-                low_m_s,
-                high_m_s,
-                standard_error_m_s,
-                degrees_of_freedom,
-                parts,
-            } => Self::Undetermined {
-                low_m_s,
-                high_m_s,
-                standard_error_m_s,
-                degrees_of_freedom,
-                parts,
+            Self::Known(error) => Self::Undetermined {
+                error,
                 reason: format!("not determined by these data: {why}"),
             },
             other => other,
         }
     }
 
-    /// What the standard error is made of.
-    pub fn parts(&self) -> Option<ErrorParts> {
+    /// The interval by a standard error, also one that leaves the speed open.
+    pub fn by_error(&self) -> Option<&ErrorInterval> {
         match self {
-            Self::Known { parts, .. } | Self::Undetermined { parts, .. } => Some(*parts),
+            Self::Known(error) | Self::Undetermined { error, .. } => Some(error),
             Self::Spread { .. } | Self::None { .. } => None,
         }
     }
@@ -245,7 +228,7 @@ impl OnsetInterval {
     pub fn reason(&self) -> Option<&str> {
         match self {
             Self::Undetermined { reason, .. } | Self::None { reason } => Some(reason),
-            Self::Known { .. } | Self::Spread { .. } => None,
+            Self::Known(_) | Self::Spread { .. } => None,
         }
     }
 
@@ -262,9 +245,9 @@ impl Onset {
     pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
         match &self.interval {
             OnsetInterval::Undetermined { reason, .. } => Err(reason),
-            OnsetInterval::Known { .. }
-            | OnsetInterval::Spread { .. }
-            | OnsetInterval::None { .. } => Ok(self.at.speed_m_s),
+            OnsetInterval::Known(_) | OnsetInterval::Spread { .. } | OnsetInterval::None { .. } => {
+                Ok(self.at.speed_m_s)
+            }
         }
     }
 
@@ -345,16 +328,17 @@ mod tests {
             };
             OnsetInterval::about(speed, half, 20.0, parts)
         };
-        assert!(matches!(
-            about(37.0, 1.0),
-            OnsetInterval::Known {
-                low_m_s: 36.0,
-                high_m_s: 38.0,
-                ..
-            }
-        ));
+        assert_eq!(about(37.0, 1.0).ends(), Some((36.0, 38.0)));
         // the whole width may be the speed, and no more
-        assert!(matches!(about(10.0, 5.0), OnsetInterval::Known { .. }));
+        assert!(matches!(about(10.0, 5.0), OnsetInterval::Known(_)));
+        // one list of keys, whether it is known or not
+        let open = about(37.0, 1.0).undetermined("another form".to_owned());
+        let text = serde_json::to_string(&open).unwrap();
+        assert_eq!(
+            text,
+            r#"{"kind":"undetermined","low_m_s":36.0,"high_m_s":38.0,"standard_error_m_s":0.5,"degrees_of_freedom":20.0,"parts":{"scatter_m_s":0.5},"reason":"not determined by these data: another form"}"#
+        );
+        assert_eq!(serde_json::from_str::<OnsetInterval>(&text).unwrap(), open);
         for (speed, half, why) in [
             (10.0, 5.1, "wider than the speed itself"),
             (9.2, 114.0, "contains zero"),

@@ -45,17 +45,6 @@ pub(super) struct Drive<'a> {
     pub force: [&'a [f64]; 3],
 }
 
-/// Largest row sums of the scaled system, by the power of the wind speed that they go with.
-#[derive(Debug, Clone, Copy, Default)]
-struct Norms {
-    rate: f64,
-    structure: f64,
-    damping: f64,
-    pressure: f64,
-    filters: f64,
-    lags: f64,
-}
-
 /// A section ready for series. Motion is scaled by powers of two to numbers of one size, exactly: displacements by their
 /// motion scale, rates by a frequency as well.
 #[derive(Debug, Clone)]
@@ -71,7 +60,12 @@ pub(super) struct PowerSeries {
     aerodynamic: Linked,
     /// `M⁻¹`, scaled.
     force: Packed,
-    norms: Norms,
+    /// Largest row sums of the scaled system, by the power of the wind speed that they go with.
+    norm_of_structure: f64,
+    norm_of_damping: f64,
+    norm_of_pressure: f64,
+    norm_of_filters: f64,
+    fastest_lag: f64,
     /// Those of the section.
     pub gusts: Option<Gusts>,
     work: Work,
@@ -112,14 +106,6 @@ impl PowerSeries {
         let rate = power_of_two(if stiffest > 0.0 { stiffest.sqrt() } else { 1.0 });
         let (structure, aerodynamic) = matrices(section, &scale, rate);
         let filters = aerodynamic.nrows() - n;
-        let norms = Norms {
-            rate,
-            structure: row_sum(&structure, 0..n),
-            damping: row_sum(&structure, n..2 * n),
-            pressure: row_sum(&aerodynamic, 0..n),
-            filters: row_sum(&aerodynamic, n..n + filters),
-            lags: gusts.as_ref().map_or(0.0, Gusts::fastest),
-        };
         let force = DMatrix::from_fn(n, n, |i, j| {
             section.inverse_mass()[(i, j)] * scale[i] / rate
         });
@@ -130,7 +116,11 @@ impl PowerSeries {
             structure: Packed::new(&structure),
             aerodynamic: Linked::new(&aerodynamic, n),
             force: Packed::new(&force),
-            norms,
+            norm_of_structure: row_sum(&structure, 0..n),
+            norm_of_damping: row_sum(&structure, n..2 * n),
+            norm_of_pressure: row_sum(&aerodynamic, 0..n),
+            norm_of_filters: row_sum(&aerodynamic, n..n + filters),
+            fastest_lag: gusts.as_ref().map_or(0.0, Gusts::fastest),
             gusts,
             work: Work {
                 sum: vec![0.0; 2 * n + filters],
@@ -148,15 +138,15 @@ impl PowerSeries {
 
     /// Norm of a step in winds up to `wind`.
     pub(super) fn norm(&self, wind: f64, step: f64) -> f64 {
-        let n = &self.norms;
-        let motion = n.structure + wind * (n.damping + wind * n.pressure);
-        step * n.rate.max(motion).max(wind * n.filters)
+        let by_wind = self.norm_of_damping + wind * self.norm_of_pressure;
+        let motion = self.norm_of_structure + wind * by_wind;
+        step * self.rate.max(motion).max(wind * self.norm_of_filters)
     }
 
     /// Parts into which a step is cut in winds up to `wind`, with or without gusts; not a number where the norm is none.
     pub(super) fn parts(&self, wind: f64, step: f64, gusts: bool) -> f64 {
         let lags = match gusts {
-            true => step * wind * self.norms.lags,
+            true => step * wind * self.fastest_lag,
             false => 0.0,
         };
         let parts = self.norm(wind, step).max(lags) / NORM_OF_PART;

@@ -29,7 +29,7 @@ pub struct DistanceDetails {
 /// # Errors
 /// [`crate::Error::Input`] if the reference is zero throughout.
 pub fn peak(pair: &SignalPair<'_>) -> Result<Metric<LevelDetails>> {
-    let [reference, compared] = [pair.reference(), pair.compared()].map(largest_magnitude);
+    let [reference, compared] = [pair.reference, pair.compared].map(largest_magnitude);
     levels(reference, compared)
 }
 
@@ -40,7 +40,7 @@ pub fn peak(pair: &SignalPair<'_>) -> Result<Metric<LevelDetails>> {
 pub fn rms(pair: &SignalPair<'_>) -> Result<Metric<LevelDetails>> {
     let root_n = (pair.sample_count() as f64).sqrt();
     let level = |x: &[f64]| norm(x.iter().copied()) / root_n;
-    levels(level(pair.reference()), level(pair.compared()))
+    levels(level(pair.reference), level(pair.compared))
 }
 
 /// Unwarped magnitude metric `M_muw = exp(−‖X₁ − X₂‖₂/‖X₁‖₂)`.
@@ -48,8 +48,8 @@ pub fn rms(pair: &SignalPair<'_>) -> Result<Metric<LevelDetails>> {
 /// # Errors
 /// [`crate::Error::Input`] if the reference is zero throughout, [`crate::Error::Numerical`] if a square overflows.
 pub fn magnitude(pair: &SignalPair<'_>) -> Result<Metric<DistanceDetails>> {
-    let compared = pair.compared().iter().copied();
-    distance_metric(pair.reference().iter().copied().zip(compared))
+    let compared = pair.compared.iter().copied();
+    distance_metric(pair.reference.iter().copied().zip(compared))
 }
 
 /// `exp(−‖X₁ − X₂‖₂/‖X₁‖₂)` over the pairs `(X₁, X₂)` handed in.
@@ -134,9 +134,9 @@ pub fn magnitude_warped(
     pair: &SignalPair<'_>,
     band_samples: Option<usize>,
 ) -> Result<Metric<WarpingDetails>> {
-    let path = warping_path(pair.compared(), pair.reference(), band_samples)?;
+    let path = warping_path(pair.compared, pair.reference, band_samples)?;
     let cells = path.cells.iter();
-    let metric = distance_metric(cells.map(|&(i, j)| (pair.reference()[j], pair.compared()[i])))?;
+    let metric = distance_metric(cells.map(|&(i, j)| (pair.reference[j], pair.compared[i])))?;
     let shift = path.cells.iter().map(|&(i, j)| i.abs_diff(j)).max();
     Ok(Metric {
         value: metric.value,

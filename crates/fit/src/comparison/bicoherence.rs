@@ -86,7 +86,7 @@ pub fn bicoherence(
 ) -> Result<Metric<BicoherenceDetails>> {
     let plane = Plane::new(pair, parameters)?;
     let [first, second] =
-        [pair.reference(), pair.compared()].map(|signal| plane.thresholded(signal, parameters));
+        [pair.reference, pair.compared].map(|signal| plane.thresholded(signal, parameters));
     let both = plane.cells().zip(first.0.iter().zip(&second.0));
     let coupled = both.filter(|(_, (a, b))| **a > 0.0 || **b > 0.0);
     let coupling = |((i, j), (&reference, &compared)): ((_, _), (&_, &_))| Coupling {

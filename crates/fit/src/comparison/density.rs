@@ -39,8 +39,8 @@ pub fn probability_density(
     pair: &SignalPair<'_>,
     standard_score: bool,
 ) -> Result<Metric<DensityDetails>> {
-    let first = values("reference signal", pair.reference(), standard_score)?;
-    let second = values("compared signal", pair.compared(), standard_score)?;
+    let first = values("reference signal", pair.reference, standard_score)?;
+    let second = values("compared signal", pair.compared, standard_score)?;
     let (low, high) = extremes(first.iter().chain(&second).copied());
     let step = (high - low) / POINTS as f64;
     let [(reference, own), (compared, other)] = [&first, &second].map(|x| density(x, [low, high]));

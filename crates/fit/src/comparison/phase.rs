@@ -69,13 +69,13 @@ pub struct PhaseDetails {
 pub fn phase(pair: &SignalPair<'_>, parameters: &PhaseParameters) -> Result<Metric<PhaseDetails>> {
     let delay = positive("significant delay T_c, s", parameters.significant_delay_s)?;
     let energy = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let (first, second) = (energy(pair.reference()), energy(pair.compared()));
+    let (first, second) = (energy(pair.reference), energy(pair.compared));
     for (place, norm) in [("reference signal", first), ("compared signal", second)] {
         if norm == 0.0 {
             return Err(zero_signal(place));
         }
     }
-    let correlation = CrossCorrelation::new(pair.reference(), pair.compared());
+    let correlation = CrossCorrelation::new(pair.reference, pair.compared);
     let whole = correlation.largest_magnitude();
     // the correlation over what it is divided by
     let divided = |lag: isize| {

@@ -81,8 +81,8 @@ pub fn stationarity(
 ) -> Result<Metric<StationarityDetails>> {
     check(parameters)?;
     let plan = Morlet::new(&parameters.wavelet, pair.sample_count(), pair.time_step_s())?;
-    let signals = [pair.reference(), pair.compared()]
-        .map(|signal| Surrogates::new(&plan, signal, parameters));
+    let signals =
+        [pair.reference, pair.compared].map(|signal| Surrogates::new(&plan, signal, parameters));
     let reference = signals[0].test("reference signal", parameters)?;
     let compared = signals[1].test("compared signal", parameters)?;
     let (value, content) = match (reference.stationary, compared.stationary) {

@@ -99,7 +99,7 @@ fn for_each_inside(
     group: &LevelGroup<'_>,
     mut visit: impl FnMut(usize, [f64; 2]),
 ) {
-    let [first, second] = [pair.reference(), pair.compared()].map(|x| group.spectrum(x));
+    let [first, second] = [pair.reference, pair.compared].map(|x| group.spectrum(x));
     let [mut one, mut other] = [RowBuffer::default(), RowBuffer::default()];
     for level in group.levels.clone() {
         let inside = plan.inside(level);

@@ -5,7 +5,7 @@ mod poles;
 
 use super::basis::model_of;
 use super::degenerate::note_lags;
-use super::dissipative::{ConstraintReport, Constraints};
+use super::dissipative::{ConstraintReport, Constraints, FitRequirements};
 use super::form::Form;
 use super::minimum_state::fit_minimum_state;
 use super::options::{FrequencyFit, FrequencyWeights};
@@ -115,7 +115,8 @@ fn fit_linear(
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
-    let requirements = fit.requirements(dofs, tested);
+    // but for the limits, which every entry or force meets by itself
+    let requirements = FitRequirements::new(dofs, tested, fit.constraints);
     let shares = by_themselves.shares_by_noise();
     let bound = by_themselves.held(&requirements, &shares, true)?;
     if bound.solution().is_none() {

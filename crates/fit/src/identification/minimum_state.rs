@@ -74,7 +74,7 @@ pub(super) fn fit_minimum_state(
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
-    task.requirements = Some(fit.requirements(dofs, tested));
+    task.requirements = Some(FitRequirements::new(dofs, tested, fit.constraints));
     task.constrain(dofs, best, tested, alone)
 }
 

@@ -110,10 +110,8 @@ impl TimeFit {
         tested: ReducedFrequencyRange,
     ) -> Result<FitRequirements> {
         Ok(FitRequirements {
-            dofs: dofs.to_vec(),
-            k_max: tested.max.full_width(),
-            constraints: self.constraints,
             limits: limits_by_entry(dofs, &self.limits)?,
+            ..FitRequirements::new(dofs, tested, self.constraints)
         })
     }
 }
@@ -242,20 +240,6 @@ impl FrequencyFit {
         Self {
             form: self.form.for_rows(rows, most),
             ..self.clone()
-        }
-    }
-
-    /// What the fit is asked for besides least squares, but for the limits: every entry or force meets its own.
-    pub(super) fn requirements(
-        &self,
-        dofs: &[Dof],
-        tested: ReducedFrequencyRange,
-    ) -> FitRequirements {
-        FitRequirements {
-            dofs: dofs.to_vec(),
-            k_max: tested.max.full_width(),
-            constraints: self.constraints,
-            limits: Vec::new(),
         }
     }
 

@@ -145,15 +145,13 @@ impl DeckOutcome {
                 let error = onset_error(&estimate, &deck.structure, &onset, None)?;
                 self.onset_m_s = Some(onset.at.speed_m_s);
                 let interval = interval_with_forms(&error, &[spread]);
-                let parts = interval.parts();
+                let parts = interval.by_error().map(|error| error.parts);
                 self.parts_m_s = parts.map(|p| (p.scatter_m_s, p.form_m_s.unwrap_or(0.0)));
                 match interval {
-                    OnsetInterval::Known {
-                        low_m_s, high_m_s, ..
-                    } => {
-                        self.interval_m_s = Some((low_m_s, high_m_s));
+                    OnsetInterval::Known(error) => {
+                        self.interval_m_s = Some((error.low_m_s, error.high_m_s));
                         if onset.in_tested_range == Some(true) {
-                            self.meet(low_m_s);
+                            self.meet(error.low_m_s);
                         }
                     }
                     other => self.refused = other.reason().map(str::to_owned),

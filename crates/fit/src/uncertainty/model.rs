@@ -214,14 +214,7 @@ impl ModelUncertainty {
     pub fn explain(&self) -> Option<String> {
         let onset = self.onset.as_ref()?;
         let stated = interval_with_forms(onset, self.form_spread.as_slice());
-        let OnsetInterval::Known {
-            low_m_s,
-            high_m_s,
-            degrees_of_freedom,
-            parts,
-            ..
-        } = stated
-        else {
+        let OnsetInterval::Known(known) = stated else {
             return stated.reason().map(|reason| format!("onset {reason}"));
         };
         let other = |r: &Option<ResampledOnset>| match r {
@@ -231,8 +224,11 @@ impl ModelUncertainty {
         let interval = match self.coefficients.known_bias() {
             Some(bias) => format!("no 95 % interval, since {bias}"),
             None => format!(
-                "95 % interval {low_m_s:.3} to {high_m_s:.3} ({degrees_of_freedom:.1} degrees of freedom; {})",
-                parts.explain()
+                "95 % interval {:.3} to {:.3} ({:.1} degrees of freedom; {})",
+                known.low_m_s,
+                known.high_m_s,
+                known.degrees_of_freedom,
+                known.parts.explain()
             ),
         };
         Some(format!(

@@ -153,13 +153,9 @@ impl Evidence {
             o.onset().is_some() && o.interval_is_known() && !contradict(first, o)
         };
         match &onset.interval {
-            OnsetInterval::Known { .. } => {}
-            &OnsetInterval::Undetermined {
-                low_m_s,
-                high_m_s,
-                ref reason,
-                ..
-            } => {
+            OnsetInterval::Known(_) => {}
+            OnsetInterval::Undetermined { error, reason } => {
+                let (low_m_s, high_m_s) = (error.low_m_s, error.high_m_s);
                 let kind = DoubtKind::IntervalUndetermined { low_m_s, high_m_s };
                 let doubt = Doubt::new(Severity::Severe, kind, format!("The onset is {reason}"));
                 found.push(doubt.settled_by("more tests near the onset, which scatter less"));
@@ -177,8 +173,8 @@ impl Evidence {
         }
         // with the scatter that decks show between speeds in the interval, also of other forces, it is known after all
         let readings = self.flutter.iter();
-        let mut parts = readings.filter_map(|r| r.onset()?.interval.parts());
-        let prior = parts.any(|p| p.between_speeds == Some(BetweenSpeeds::Prior));
+        let mut errors = readings.filter_map(|r| r.onset()?.interval.by_error());
+        let prior = errors.any(|e| e.parts.between_speeds == Some(BetweenSpeeds::Prior));
         if prior || self.test_speeds == Some(1) {
             let how = match prior {
                 true => "is taken from other decks",

@@ -135,16 +135,17 @@ impl FlutterReading {
         let onset = self.onset()?;
         let best = onset.at.speed_m_s;
         match onset.interval {
-            OnsetInterval::Undetermined {
-                low_m_s, high_m_s, ..
-            } => Some((low_m_s.max(0.5 * best), high_m_s.min(2.0 * best))),
+            OnsetInterval::Undetermined { error, .. } => Some((
+                error.low_m_s.max(0.5 * best),
+                error.high_m_s.min(2.0 * best),
+            )),
             ref other => other.ends(),
         }
     }
 
     /// Whether the onset has an interval that is a statement of probability, or needs none.
     pub(super) fn interval_is_known(&self) -> bool {
-        let known = |o: &Onset| matches!(o.interval, OnsetInterval::Known { .. });
+        let known = |o: &Onset| matches!(o.interval, OnsetInterval::Known(_));
         self.basis == ForceBasis::Exact || self.onset().is_none_or(known)
     }
 

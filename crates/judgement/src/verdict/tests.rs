@@ -4,8 +4,9 @@ mod doubts;
 
 use super::*;
 use crate::flutter::{
-    BetweenSpeeds, CriticalPoint, ErrorParts, FastMotion, FlutterSearch, GrowthBand, MovedOnset,
-    Onset, OnsetInterval, OnsetMethod, StableRange, TestedFrom, UnstableStart, UnwantedGrowth,
+    BetweenSpeeds, CriticalPoint, ErrorInterval, ErrorParts, FastMotion, FlutterSearch, GrowthBand,
+    MovedOnset, Onset, OnsetInterval, OnsetMethod, StableRange, TestedFrom, UnstableStart,
+    UnwantedGrowth,
 };
 use crate::plausibility::Finding;
 use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
@@ -311,11 +312,13 @@ fn model_and_table_that_contradict_each_other_are_said() {
     let mut open = found("the models", 84.1, 0.0);
     if let FlutterSearch::Onset(onset) = &mut open.search {
         onset.interval = OnsetInterval::Undetermined {
-            low_m_s: -2.9,
-            high_m_s: 149.0,
-            standard_error_m_s: 19.4,
-            degrees_of_freedom: 3.0,
-            parts: ErrorParts::default(),
+            error: ErrorInterval {
+                low_m_s: -2.9,
+                high_m_s: 149.0,
+                standard_error_m_s: 19.4,
+                degrees_of_freedom: 3.0,
+                parts: ErrorParts::default(),
+            },
             reason: "scatter".to_owned(),
         };
     }

@@ -24,7 +24,7 @@ mod wind_block;
 pub use axes::{Direction, WindAxes};
 pub use dampers::DamperBlock;
 pub use field::FieldTable;
-pub use modal_data::BridgeModes;
+pub use modal_data::{BridgeModes, tributary_lengths};
 pub use section_block::{BridgeSectionBlock, StaticBlock};
 pub use section_forces::{ModalSectionForces, read_section_forces};
 pub use single_file::write_modes;

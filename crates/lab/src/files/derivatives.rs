@@ -5,6 +5,7 @@ mod csv_header;
 mod csv_wide;
 pub mod embedded;
 mod missing;
+mod stated_convention;
 mod wide_sheet;
 mod workbook;
 mod workbook_writer;
@@ -13,11 +14,12 @@ mod xlsx_cells;
 pub(crate) use csv_file::{parse_csv, read_csv_with};
 pub use csv_file::{parse_csv_in, write_csv, write_csv_in, write_points};
 pub use csv_header::{ReadOptions, WIDTH_ASSUMED};
+pub use stated_convention::StatedConvention;
 pub use workbook::TABLE_3_2_FREQUENCIES_HZ;
 pub use workbook_writer::{template_bytes, workbook_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::derivatives::notation::{Convention, StatedConvention};
+use crate::aerodynamics::derivatives::notation::Convention;
 use crate::error::{Error, Result, ensure};
 use std::path::Path;
 

@@ -2,10 +2,11 @@
 
 use super::coupled::Built;
 use super::damping::PresentDamping;
-use crate::bridge::{Bridge, GustChannels};
+use crate::bridge::Bridge;
 use crate::bridge_gusts::GustRecord;
 use crate::error::{Error, Result, ensure};
 use crate::flutter::NearbyOnset;
+use crate::gust_channels::GustChannels;
 use crate::resources::Resources;
 use crate::response::{Inputs, SectionState, Stepper};
 use crate::units::ReducedFrequency;

@@ -14,7 +14,7 @@
 mod convention;
 mod expressed;
 
-pub use convention::{Convention, StatedConvention};
+pub use convention::Convention;
 pub use expressed::ExpressedPoint;
 pub use expressed::{ExpressedDerivative, ExpressedTable};
 

@@ -4,6 +4,7 @@ use super::report::{ActiveConstraint, ConstraintKind};
 use crate::identification::basis::Basis;
 use crate::identification::form::{LEAST_CHOSEN, MOST_CHOSEN};
 use crate::section::Dof;
+use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
 /// What a fitted model has to be besides close to the data.
@@ -41,6 +42,20 @@ pub(crate) struct FitRequirements {
 }
 
 impl FitRequirements {
+    /// Without limits.
+    pub(crate) fn new(
+        dofs: &[Dof],
+        tested: ReducedFrequencyRange,
+        constraints: Constraints,
+    ) -> Self {
+        Self {
+            dofs: dofs.to_vec(),
+            k_max: tested.max.full_width(),
+            constraints,
+            limits: Vec::new(),
+        }
+    }
+
     /// Whether anything is asked.
     pub(crate) fn any(&self) -> bool {
         self.constraints == Constraints::Dissipative || !self.limits.is_empty()

@@ -42,22 +42,8 @@ pub struct Gaussian {
     pub upper: Option<f64>,
 }
 
-/// A distribution with its numbers worked out: a function of a standard normal variable.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Transform {
-    /// Of the logarithm if `exponential`.
-    Gaussian {
-        mean: f64,
-        deviation: f64,
-        /// Probabilities between which it is kept, counted from the lower tail or, with the sign −1, from the upper one.
-        ends: Option<([f64; 2], f64)>,
-        exponential: bool,
-    },
-    Uniform {
-        lower: f64,
-        width: f64,
-    },
-}
+/// A distribution with its numbers worked out: the parameter for a standard normal variable.
+pub(super) type Transform = Box<dyn Fn(f64) -> f64 + Send + Sync>;
 
 impl Distribution {
     /// The mean, of a truncated one no further out than its ends; `nominal` is the value of the model.
@@ -87,7 +73,7 @@ impl Distribution {
                     format_args!("{lower} to {upper}"),
                 )?;
                 let (lower, width) = (*lower, upper - lower);
-                Ok(Transform::Uniform { lower, width })
+                Ok(Box::new(move |z| lower + width * normal_cdf(z)))
             }
             Self::Normal(given) => {
                 let mean = finite(at("mean"), given.mean.unwrap_or(nominal))?;
@@ -128,7 +114,7 @@ impl Gaussian {
     }
 }
 
-/// The transform of a Gaussian, cut where it has ends.
+/// The transform of a Gaussian, of the logarithm if `exponential`, cut where it has ends.
 fn gaussian(
     place: &str,
     mean: f64,
@@ -137,14 +123,12 @@ fn gaussian(
     upper: Option<f64>,
     exponential: bool,
 ) -> Result<Transform> {
-    let transform = |ends| Transform::Gaussian {
-        mean,
-        deviation,
-        ends,
-        exponential,
+    let scaled = move |z: f64| {
+        let x = mean + deviation * z;
+        if exponential { x.exp() } else { x }
     };
     if lower.is_none() && upper.is_none() {
-        return Ok(transform(None));
+        return Ok(Box::new(scaled));
     }
     let standard = |end: f64| (end - mean) / deviation;
     let low = lower.map_or(f64::NEG_INFINITY, standard);
@@ -162,30 +146,11 @@ fn gaussian(
         format_args!("{} to {}", end(lower), end(upper)),
     )?;
     let sign = if mirrored { -1.0 } else { 1.0 };
-    Ok(transform(Some(([from, to], sign))))
-}
-
-impl Transform {
-    /// The parameter for a standard normal `z`.
-    pub(super) fn value(&self, z: f64) -> f64 {
-        match *self {
-            Self::Uniform { lower, width } => lower + width * normal_cdf(z),
-            Self::Gaussian {
-                mean,
-                deviation,
-                ends,
-                exponential,
-            } => {
-                // the standard normal variable between the ends for an unbounded one
-                let inside = |([from, to], sign): ([f64; 2], f64)| {
-                    let u = from + (to - from) * normal_cdf(sign * z);
-                    sign * normal_quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
-                };
-                let x = mean + deviation * ends.map_or(z, inside);
-                if exponential { x.exp() } else { x }
-            }
-        }
-    }
+    // the standard normal variable between the ends for an unbounded one
+    Ok(Box::new(move |z| {
+        let u = from + (to - from) * normal_cdf(sign * z);
+        scaled(sign * normal_quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON)))
+    }))
 }
 
 #[cfg(test)]
@@ -201,7 +166,7 @@ mod tests {
     fn moments(t: Transform) -> (f64, f64) {
         const N: usize = 20_000;
         let values: Vec<f64> = (0..N)
-            .map(|i| t.value(normal_quantile((i as f64 + 0.5) / N as f64)))
+            .map(|i| t(normal_quantile((i as f64 + 0.5) / N as f64)))
             .collect();
         let mean = values.iter().sum::<f64>() / N as f64;
         let square = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / N as f64;
@@ -237,7 +202,7 @@ mod tests {
             ));
             let mut last = f64::NEG_INFINITY;
             for z in [-6.0, -2.0, 0.0, 1.0, 6.0] {
-                let x = t.value(z);
+                let x = t(z);
                 assert!(
                     lower <= x + 1e-9 && x <= upper + 1e-9 && x > last,
                     "{x} at {z}"
@@ -270,7 +235,7 @@ mod tests {
             ),
         ] {
             let d: Distribution = serde_json::from_str(text).unwrap();
-            let message = d.resolve("p", 2.0).unwrap_err().to_string();
+            let message = d.resolve("p", 2.0).err().unwrap().to_string();
             assert!(message.contains(said), "{message}");
         }
     }

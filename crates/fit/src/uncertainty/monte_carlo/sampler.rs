@@ -13,7 +13,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 /// Draws samples. One stream of the generator per sample, so that neither threads nor their order matter.
-#[derive(Debug, Clone)]
 pub(super) struct Sampler {
     seed: u64,
     section: SectionModel,
@@ -83,7 +82,7 @@ impl Sampler {
                 Some(factor) => (0..=i).map(|j| factor[(i, j)] * sample.normal[j]).sum(),
             };
             if let Some(place) = parameter.place(&mut sample.section) {
-                *place = transform.value(z);
+                *place = transform(z);
             }
         }
         if let Some(scatter) = self.relative_scatter {

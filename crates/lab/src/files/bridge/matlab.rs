@@ -3,8 +3,8 @@
 //!
 //! Such a file knows neither the span nor the masses; both are stated beside it and the generalised masses are `m ∫φ²`.
 
-use super::modal_data::BridgeModes;
-use crate::bridge::{BridgeMode, Node, tributary_lengths};
+use super::modal_data::{BridgeModes, tributary_lengths};
+use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, ensure};
 use crate::files::lab::matlab_array;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! Nodes and modes as finite-element programs write them, and as the bridge takes them.
 
 use super::axes::Frame;
-use crate::bridge::{BridgeMode, Node, tributary_lengths};
+use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, ensure};
 use crate::plausibility::{Finding, FindingKind, of_modes};
 use nalgebra::Vector3;
@@ -63,6 +63,14 @@ impl BridgeModes {
             reversed,
         })
     }
+}
+
+/// Tributary lengths by the trapezoidal rule: half the way to each neighbour. One node alone has none.
+pub fn tributary_lengths(along_m: &[f64]) -> Vec<f64> {
+    let last = along_m.len().saturating_sub(1);
+    (0..along_m.len())
+        .map(|i| 0.5 * (along_m[(i + 1).min(last)] - along_m[i.saturating_sub(1)]))
+        .collect()
 }
 
 /// Refuses nodes that do not rise along the girder, before the tributary lengths complain of it.

@@ -1,9 +1,9 @@
 //! `[[section]]` of `bridge.toml`: width, nodes and forces of a part of the span.
 
 use crate::aerodynamics::derivatives::Interpolation;
-use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::error::{Result, ensure, positive};
+use crate::files::derivatives::StatedConvention;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

@@ -1,10 +1,9 @@
 //! Head of a file of derivatives: where the table comes from, and in which convention it is written.
 
-use crate::aerodynamics::derivatives::notation::{
-    Argument, Axes, Convention, Notation, StatedConvention,
-};
+use crate::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
 use crate::aerodynamics::derivatives::{Missing, SIGN_CONVENTION, TableHeader, UNITS};
 use crate::error::{Error, Result};
+use crate::files::derivatives::StatedConvention;
 use crate::files::header_csv::{CommentHeader, HeaderLine};
 use std::io::Write;
 

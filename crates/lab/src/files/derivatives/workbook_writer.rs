@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn notes_state_the_convention() {
         use crate::aerodynamics::derivatives::notation::Notation;
-        use crate::aerodynamics::derivatives::notation::StatedConvention;
+        use crate::files::derivatives::StatedConvention;
         let table = embedded::deck("LN21-5200").unwrap();
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");

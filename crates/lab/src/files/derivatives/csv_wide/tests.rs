@@ -1,9 +1,9 @@
 //! Tests of wide tables.
 
 use crate::aerodynamics::derivatives::Missing;
-use crate::aerodynamics::derivatives::notation::{Notation, StatedConvention};
+use crate::aerodynamics::derivatives::notation::Notation;
 use crate::files::derivatives::csv_wide::*;
-use crate::files::derivatives::{embedded, read_csv_with};
+use crate::files::derivatives::{StatedConvention, embedded, read_csv_with};
 use crate::section::Dof;
 
 fn read(text: &str, options: &ReadOptions) -> Result<DerivativeTable> {

@@ -1,10 +1,10 @@
 //! Workbooks as laboratories send them: titles, units, merged cells, several sheets, commas.
 
-use crate::aerodynamics::derivatives::notation::{Argument, Notation, StatedConvention};
+use crate::aerodynamics::derivatives::notation::{Argument, Notation};
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
 use crate::files::derivatives::{
-    ReadOptions, embedded, read_table, read_table_with, template_bytes,
+    ReadOptions, StatedConvention, embedded, read_table, read_table_with, template_bytes,
 };
 use rust_xlsxwriter::{Format, Workbook, Worksheet};
 use std::io::{Read, Write};

@@ -4,13 +4,13 @@
 //! `V Σ_{i in s} w_i φ_m(i)ᵀ ½ρp diag(B, B, B²) A (u_s, w_s)`. The admittance delays a gust by lags that follow with the wind and
 //! the width of their strip: strips of one `p/B` share the lags of each mode, and their forces per 1 m/s of wind are a channel.
 
-use super::Bridge;
+use crate::bridge::Bridge;
 use crate::error::{Error, Result, counted, ensure};
 use crate::section::Dof;
 
 /// What the gusts of strips do to the mass-normalised modes, per 1 m/s of wind.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GustChannels {
+pub(crate) struct GustChannels {
     /// Wind factor over width of each group of channels, 1/m; as many channels in a group as modes.
     pub convection_per_width: Vec<f64>,
     /// Force on each channel by a gust of 1 m/s: `u` of the first strip, `w` of the first strip, `u` of the second …
@@ -23,7 +23,11 @@ impl GustChannels {
     ///
     /// # Errors
     /// [`Error::Input`] for another number of matrices than of groups and for strips of nodes that are none or already taken.
-    pub fn new(bridge: &Bridge, matrices: &[[[f64; 2]; 3]], strips: &[Vec<usize>]) -> Result<Self> {
+    pub(crate) fn new(
+        bridge: &Bridge,
+        matrices: &[[[f64; 2]; 3]],
+        strips: &[Vec<usize>],
+    ) -> Result<Self> {
         ensure(
             matrices.len() == bridge.groups.len(),
             "gust forces",
@@ -76,7 +80,7 @@ impl GustChannels {
     }
 
     /// Adds the forces of these gusts, m/s, to every channel.
-    pub fn add(&self, gusts: impl Iterator<Item = f64>, channels: &mut [f64]) {
+    pub(crate) fn add(&self, gusts: impl Iterator<Item = f64>, channels: &mut [f64]) {
         for (gust, column) in gusts.zip(&self.by_gust).filter(|(gust, _)| *gust != 0.0) {
             for (channel, force) in channels.iter_mut().zip(column) {
                 *channel += gust * force;
