@@ -91,7 +91,7 @@ fn write(
     out.write_json("buffeting.json", "buffeting-results", results)?;
     let mut drawn = Vec::new();
     let mut draw = |stem: &str, caption: String, figure: Figure| {
-        drawn.push((caption, figure.svg().to_owned()));
+        drawn.push((caption, figure.clone()));
         figures::write(stem, out, || Ok(figure))
     };
     if !results.responses.is_empty() {
@@ -144,7 +144,7 @@ fn page(
     key: &str,
     results: &BuffetingStudy,
     verdict: Option<&Verdict>,
-    figures: Vec<(String, String)>,
+    figures: Vec<(String, Figure)>,
 ) -> Result<SectionsPage> {
     let mut rows = Vec::new();
     for r in results.shown() {

@@ -6,7 +6,7 @@ use crate::aerodynamics::derivatives::Derivative;
 use crate::error::counted;
 use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
-use crate::report::{PageSection, SectionsPage};
+use crate::report::{Figure, PageSection, SectionsPage};
 use crate::section::Dof;
 use crate::signal::median;
 use crate::wind_tunnel::RawCampaign;
@@ -23,10 +23,10 @@ pub(super) fn laboratory_page(
 ) -> SectionsPage {
     let estimates = found.map_or(&[][..], |f| &f.estimates);
     let caption = "Points: test points of each mean speed, with 95 % intervals. Lines: theory.";
-    let derivatives = svg(out, "derivatives").map(|svg| (caption.to_owned(), svg));
+    let derivatives = drawn(out, "derivatives").map(|figure| (caption.to_owned(), figure));
     let stages = report.runs.iter().filter_map(|run| {
-        let drawn = svg(out, &format!("processing/{}", file_name(&run.run)))?;
-        Some((run.run.clone(), drawn))
+        let figure = drawn(out, &format!("processing/{}", file_name(&run.run)))?;
+        Some((run.run.clone(), figure))
     });
     let section = |title: &str| PageSection {
         title: title.to_owned(),
@@ -97,11 +97,10 @@ fn estimate_row(e: &DerivativeEstimate) -> Vec<String> {
     ]
 }
 
-/// A figure that was drawn, without what only a file of its own needs.
-pub(super) fn svg(out: &OutputDir, stem: &str) -> Option<String> {
-    let text = std::fs::read_to_string(out.staging().join(format!("{stem}.svg"))).ok()?;
-    let start = text.find("<svg")?;
-    Some(text[start..].to_owned())
+/// A figure that was drawn.
+pub(super) fn drawn(out: &OutputDir, stem: &str) -> Option<Figure> {
+    let text = std::fs::read_to_string(out.staging().join(format!("{stem}.svg")));
+    Figure::of_file(&text.ok()?)
 }
 
 /// A run in one line.

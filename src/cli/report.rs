@@ -101,7 +101,7 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
         (page.speeds, page.curves) = curves_of(&curves, &summary.model)?;
     }
-    page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
+    page.summary = summary_figure(&page)?;
     page.live = sliders(&study, read(MODEL_FILE))?;
     let turbulent = read(buffeting::PAGE).filter(|_| summary.buffeting.is_some());
     let turbulent = turbulent.and_then(|bytes| String::from_utf8(bytes).ok());

@@ -5,7 +5,7 @@ use super::vocabulary::{Answer, OutputDir, Progress, Temporary, list};
 use super::{headline, result_files, stages, text};
 use crate::aerodynamics::laguerre::discrete_memory;
 use crate::cli::compare::thesis_comparisons;
-use crate::cli::laboratory::svg;
+use crate::cli::laboratory::drawn;
 use crate::cli::result_files::{FIGURE, RESPONSE, ROOTS};
 use crate::cli::select::parameter_maps;
 use crate::error::{Error, Result};
@@ -102,15 +102,12 @@ fn rows_of(file: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, String)> {
+fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, Figure)> {
     let one = |(number, figure): (&str, Figure)| {
         let mut captions = include_str!("thesis/captions.txt").lines();
         let known = captions.find_map(|line| line.strip_prefix(number)?.strip_prefix(" | "));
         let caption = known.unwrap_or_default();
-        (
-            format!("Figure {number}: {caption}"),
-            figure.svg().to_owned(),
-        )
+        (format!("Figure {number}: {caption}"), figure)
     };
     figures.into_iter().map(one).collect()
 }
@@ -148,8 +145,7 @@ fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<Page
             metrics.motion.name(),
             metrics.frequency_hz
         );
-        let figure = parameter_maps(&alphas, FILTERS, &metrics)?;
-        figures.push((caption, figure.svg().to_owned()));
+        figures.push((caption, parameter_maps(&alphas, FILTERS, &metrics)?));
     }
     drop(stage);
     Ok(PageSection {
@@ -242,7 +238,7 @@ fn onsets(results: &FlutterStudy, out: &OutputDir) -> PageSection {
         rows: results.onsets.iter().map(row).collect(),
         figures: figures
             .into_iter()
-            .filter_map(|(stem, caption)| Some((caption.to_owned(), svg(out, stem)?)))
+            .filter_map(|(stem, caption)| Some((caption.to_owned(), drawn(out, stem)?)))
             .collect(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::vocabulary::{
     Axis, COLOURS, Drawing, Figure, Ink, Panel, PlottedSeries, Shape, colour, dash, entries,
-    labels_of, titled,
+    labels_of,
 };
 use crate::error::Result;
 
@@ -61,7 +61,7 @@ pub(crate) fn scaled_history_figure(
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data, numbers that are not finite, and more labels than colours.
-pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel], columns: usize) -> Result<Figure> {
+pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel]) -> Result<Figure> {
     const PLACE: &str = "metrics";
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     let line = |i: usize| Ink::nth(PLACE, i);
@@ -76,16 +76,9 @@ pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel], columns: usize) 
         drawing.add_labelled(&panel.series, &labels, dots)?;
         drawn.push(drawing);
     }
-    Drawing {
-        name: PLACE,
-        title: titled(title),
-        panels: drawn,
-        columns: columns.max(1),
-        axes: (230.0, 160.0),
-        legend: vec![entries(&labels, line)?],
-    }
-    .over_one_abscissa()
-    .draw()
+    let (axes, legend) = ([230.0, 160.0], vec![entries(&labels, line)?]);
+    let drawing = Drawing::grid(PLACE, title, drawn, 3, axes, legend);
+    drawing.over_one_abscissa().draw()
 }
 
 const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Square, Shape::Diamond, Shape::Cross];
@@ -105,16 +98,11 @@ pub struct GrowthPanel {
     pub expected: Vec<(f64, f64)>,
 }
 
-/// Panels of cost over size, `columns` beside each other, with `y_label` in common.
+/// Panels of cost over size, three beside each other, with `y_label` in common.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data and numbers that are not finite.
-pub fn growth_figure(
-    title: &str,
-    panels: &[GrowthPanel],
-    y_label: &str,
-    columns: usize,
-) -> Result<Figure> {
+pub fn growth_figure(title: &str, panels: &[GrowthPanel], y_label: &str) -> Result<Figure> {
     let logarithmic = |label: &str| Axis::new(label).logarithmic();
     let inks = [
         Ink::dots(COLOURS[0], Shape::Circle),
@@ -133,13 +121,7 @@ pub fn growth_figure(
         }
         drawing
     });
-    Drawing {
-        name: "cost over size",
-        title: titled(title),
-        panels: drawn.collect(),
-        columns,
-        axes: (230.0, 150.0),
-        legend: vec![entries(&labels, |i| Ok(inks[i]))?],
-    }
-    .draw()
+    let (panels, legend) = (drawn.collect(), vec![entries(&labels, |i| Ok(inks[i]))?]);
+    let axes = [230.0, 150.0];
+    Drawing::grid("cost over size", title, panels, 3, axes, legend).draw()
 }

@@ -2,7 +2,7 @@
 
 use super::vocabulary::{
     Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Panel, Shape, distinct, entries, index_of,
-    titled,
+
 };
 use crate::comparison::forces::PerModel;
 use crate::error::Result;
@@ -59,16 +59,9 @@ pub(crate) fn transfer_figure(
         }
     }
     legend.extend(entries(&labels, ink)?);
-    Drawing {
-        name: PLACE,
-        title: titled(title),
-        panels,
-        columns: 2,
-        axes: (330.0, if plots.len() > 2 { 150.0 } else { 240.0 }),
-        legend: vec![legend],
-    }
-    .over_one_abscissa()
-    .draw()
+    let axes = [330.0, if plots.len() > 2 { 150.0 } else { 240.0 }];
+    let drawing = Drawing::grid(PLACE, title, panels, 2, axes, vec![legend]);
+    drawing.over_one_abscissa().draw()
 }
 
 /// A panel of magnitudes or phases with the reference and the band around it.

@@ -116,8 +116,8 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
         "Mean, and mean ± expected peak, along the girder.",
         "Spectra of the displacements times the frequency.",
     ];
-    let figures = captions.into_iter().zip([envelope, spectra]);
-    let figures = figures.map(|(caption, figure)| (caption.to_owned(), figure.svg().to_owned()));
+    let captions = captions.into_iter().map(str::to_owned);
+    let figures = captions.zip([envelope, spectra]);
     let of_sections = of.envelope.section_forces.iter().map(|f| {
         let peak = f.peak_factor * f.rms;
         format!(

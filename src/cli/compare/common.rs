@@ -93,7 +93,7 @@ pub(super) fn metrics_of(
             });
         }
     }
-    metrics_figure(title, &panels, 3)
+    metrics_figure(title, &panels)
 }
 
 /// A section of the page of the thesis.
@@ -111,7 +111,7 @@ pub(super) fn section(
             .collect(),
         figures: figures
             .into_iter()
-            .map(|(caption, figure)| (caption.replace('_', " "), figure.svg().to_owned()))
+            .map(|(caption, figure)| (caption.replace('_', " "), figure))
             .collect(),
         ..PageSection::default()
     }

@@ -72,7 +72,7 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
         let shown = facts.flutter.shown_modes(own.map(|o| o.branch.as_str()));
         (page.speeds, page.curves) = (speeds, chosen(curves, &shown));
     }
-    page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
+    page.summary = summary_figure(&page)?;
     if read(BRIDGE_FMU).is_some() {
         page.fmu = BRIDGE_FMU.to_owned();
         page.variables = variables_of(&Fmu::open(folder.join(BRIDGE_FMU))?);

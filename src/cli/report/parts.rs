@@ -5,7 +5,7 @@ use crate::cli::text::interval;
 use crate::error::{Error, Result};
 use crate::flutter::{ModeBranch, Onset, OnsetInterval};
 use crate::fmu::package::live_module;
-use crate::report::{PageCurve, PageFigure};
+use crate::report::{Figure, PageCurve, PageFigure};
 use crate::study::Study;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -109,13 +109,12 @@ pub(super) fn round(x: f64) -> f64 {
     (1e9 * x).round() / 1e9
 }
 
-/// The figure in a file, without what only a file of its own needs.
+/// A figure of a file with its words.
 pub(super) fn of_svg(text: &str, title: &str, caption: &'static str) -> Option<PageFigure> {
-    let svg = text[text.find("<svg")?..].to_owned();
-    Some(PageFigure {
+    Figure::of_file(text).map(|figure| PageFigure {
         title: title.to_owned(),
         caption,
-        svg,
+        figure,
     })
 }
 
