@@ -118,14 +118,12 @@ impl RecordExcerpt {
                 let points = (first..last).map(|n| (at(n), value(n)));
                 PlottedSeries::new(label, points.collect())
             };
-            TimePanel {
-                y_label: self.label(h, i),
-                series: vec![
-                    points(origin, &|n| measured[n]),
-                    points("model", &|n| model[n]),
-                    points(&format!("{origin} less model"), &|n| measured[n] - model[n]),
-                ],
-            }
+            let series = [
+                points(origin, &|n| measured[n]),
+                points("model", &|n| model[n]),
+                points(&format!("{origin} less model"), &|n| measured[n] - model[n]),
+            ];
+            TimePanel::new(self.label(h, i), series)
         };
         Ok((0..h.dofs.len()).map(panel).collect())
     }

@@ -57,10 +57,7 @@ pub(crate) fn run(
         }
         named => named.iter().map(|n| column(n)).collect::<Result<_>>()?,
     };
-    let panel = |c: usize| TimePanel {
-        y_label: label(&names[c]),
-        series: curves(&names, &rows, x, c),
-    };
+    let panel = |c: usize| TimePanel::new(label(&names[c]), curves(&names, &rows, x, c));
     let panels: Vec<TimePanel> = y.into_iter().map(panel).collect();
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let folder = out.unwrap_or(folder_of(file));

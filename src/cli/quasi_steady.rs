@@ -216,20 +216,17 @@ fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
     for (i, dof) in run.dofs.iter().enumerate() {
         let (factor, unit) = dof.shown_in();
         let of = |rows: &[Vec<f64>]| rows.iter().map(|r| factor * r[i]).collect::<Vec<_>>();
-        panels.push(TimePanel {
-            y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-            series: vec![
-                series("nonlinear", &mut of(&run.nonlinear).into_iter()),
-                series("linear", &mut of(&run.linear).into_iter()),
-            ],
-        });
+        let both = [
+            series("nonlinear", &mut of(&run.nonlinear).into_iter()),
+            series("linear", &mut of(&run.linear).into_iter()),
+        ];
+        let label = format!("{} {} ({unit})", dof.name(), dof.symbol());
+        panels.push(TimePanel::new(label, both));
     }
-    panels.push(TimePanel {
-        y_label: "gusts (m/s)".to_owned(),
-        series: vec![
-            series("gust u", &mut run.gusts_m_s.iter().map(|g| g.0)),
-            series("gust w", &mut run.gusts_m_s.iter().map(|g| g.1)),
-        ],
-    });
+    let gusts = [
+        series("gust u", &mut run.gusts_m_s.iter().map(|g| g.0)),
+        series("gust w", &mut run.gusts_m_s.iter().map(|g| g.1)),
+    ];
+    panels.push(TimePanel::new("gusts (m/s)", gusts));
     panels
 }

@@ -294,10 +294,7 @@ pub(super) fn motion_panels(dofs: &[Dof], runs: &[(&str, &[Vec<f64>])]) -> Vec<T
             let points = rows.iter().map(|row| (row[0], scale * row[1 + i]));
             PlottedSeries::new(*label, points.collect())
         });
-        TimePanel {
-            y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-            series: series.collect(),
-        }
+        TimePanel::new(format!("{} {} ({unit})", dof.name(), dof.symbol()), series)
     };
     dofs.iter().enumerate().map(panel).collect()
 }

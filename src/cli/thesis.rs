@@ -79,7 +79,17 @@ fn thesis_page(
     let mut sections = vec![functions()?, first_order(progress)?];
     sections.push(parameters(records, progress)?);
     sections.extend(thesis_comparisons(progress)?);
-    sections.extend([onsets(results, out), errata(), not_computed()]);
+    sections.push(onsets(results, out));
+    sections.push(PageSection::table(
+        "Errata that change a number",
+        "equation | printed | here",
+        rows_of(include_str!("thesis/errata.txt")),
+    ));
+    sections.push(PageSection::table(
+        "Figures that are not computed",
+        "figure | why",
+        rows_of(include_str!("thesis/not_computed.txt")),
+    ));
     let mut onsets = results.onsets.iter();
     let own = onsets.find(|o| o.at.model != "interpolated table");
     let own = own.map(|o| format!("{:.1} m/s", o.at.speed_m_s));
@@ -153,16 +163,6 @@ fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<Page
         figures,
         ..PageSection::default()
     })
-}
-
-/// Figures that are not here, and why.
-fn not_computed() -> PageSection {
-    PageSection {
-        title: "Figures that are not computed".to_owned(),
-        header: "figure | why",
-        rows: rows_of(include_str!("thesis/not_computed.txt")),
-        ..PageSection::default()
-    }
 }
 
 fn first_order(progress: &Progress) -> Result<PageSection> {
@@ -240,15 +240,5 @@ fn onsets(results: &FlutterStudy, out: &OutputDir) -> PageSection {
             .into_iter()
             .filter_map(|(stem, caption)| Some((caption.to_owned(), drawn(out, stem)?)))
             .collect(),
-    }
-}
-
-/// Corrections of printed equations that change a number.
-fn errata() -> PageSection {
-    PageSection {
-        title: "Errata that change a number".to_owned(),
-        header: "equation | printed | here",
-        rows: rows_of(include_str!("thesis/errata.txt")),
-        ..PageSection::default()
     }
 }

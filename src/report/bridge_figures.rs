@@ -2,8 +2,7 @@
 
 use super::flutter_figures::root_locus;
 use super::vocabulary::{
-    Axis, COLOURS, Drawing, Entry, Figure, GREY, Ink, PALE_GREY, Panel, Shape, dash,
-    outcome_colour,
+    Axis, COLOURS, Drawing, Entry, Figure, GREY, Ink, PALE_GREY, Panel, Shape, dash, outcome_colour,
 };
 use crate::bridge::Bridge;
 use crate::error::Result;

@@ -15,7 +15,6 @@ const TITLE_HEIGHT: f64 = 30.0;
 const EDGE: f64 = 12.0;
 const RIGHT: f64 = 16.0;
 
-
 /// A whole figure before it is drawn.
 #[derive(Debug)]
 pub(super) struct Drawing {

@@ -15,6 +15,19 @@ pub struct TimePanel {
     pub series: Vec<PlottedSeries>,
 }
 
+impl TimePanel {
+    /// Histories with this name of the ordinate.
+    pub fn new(
+        y_label: impl Into<String>,
+        series: impl IntoIterator<Item = PlottedSeries>,
+    ) -> Self {
+        Self {
+            y_label: y_label.into(),
+            series: series.into_iter().collect(),
+        }
+    }
+}
+
 /// Histories over time, one panel below the other with the time axis `t_label` in common.
 ///
 /// Of long histories every px column shows its first, lowest, highest and last point, so that no peak is lost.

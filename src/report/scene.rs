@@ -86,7 +86,6 @@ pub struct Figure {
 }
 
 impl Figure {
-
     /// That of a file, without what only a file of its own needs; none where there is no drawing in it.
     pub(crate) fn of_file(text: &str) -> Option<Self> {
         let svg = text[text.find("<svg")?..].to_owned();

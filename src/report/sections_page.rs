@@ -44,4 +44,16 @@ pub(crate) struct PageSection {
     pub(crate) figures: Vec<(String, Figure)>,
 }
 
+impl PageSection {
+    /// One of a table alone.
+    pub(crate) fn table(title: &str, header: &'static str, rows: Vec<Vec<String>>) -> Self {
+        Self {
+            title: title.to_owned(),
+            header,
+            rows,
+            ..Self::default()
+        }
+    }
+}
+
 const GENERATOR: &str = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));

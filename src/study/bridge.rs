@@ -14,9 +14,7 @@ mod scatter;
 mod similarity;
 
 pub(crate) use answers::NAMED_SHARE;
-pub use answers::{
-    BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
-};
+pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, TableDivergence, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BuffetingBlock, ModelsBesideTables};
 pub use envelope::{SectionForceResponse, SpanEnvelope};
 pub use export::BridgeExportOptions;

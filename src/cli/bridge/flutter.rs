@@ -19,11 +19,11 @@ use crate::report::{
     PlottedSeries, TimePanel, bridge_curves_figure, bridge_roots_figure, flutter_motion_figure,
     scaled_history_figure,
 };
+use crate::study::bridge::BridgeMotion;
 use crate::study::bridge::{
     BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
     bridge_flutter,
 };
-use crate::study::bridge::{BridgeMotion, NodeMotion};
 use crate::study::derivative_lines;
 use crate::verdict::Verdict;
 use nalgebra::Complex;
@@ -331,21 +331,14 @@ fn panels(results: &BridgeFlutter) -> Option<Vec<TimePanel>> {
             });
             PlottedSeries::new(label.clone(), points.collect())
         });
-        TimePanel {
-            y_label: name.to_owned(),
-            series: series.collect(),
-        }
+        TimePanel::new(name, series)
     };
     Some(names.into_iter().enumerate().map(panel).collect())
 }
 
 /// Motion of the node that turns most, with that rotation 1° and real.
 fn displaced(motion: &BridgeMotion) -> Option<[Complex<f64>; 3]> {
-    let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
-    let turns = |n: &&NodeMotion| complex(n.motion[2]).norm();
-    let nodes = motion.nodes.iter();
-    let most = nodes.max_by(|a, b| turns(a).total_cmp(&turns(b)))?;
-    let [y, x, theta] = most.motion.map(complex);
+    let [y, x, theta] = motion.turning_most()?;
     let unit = theta / RELEASED_DEG.to_radians();
     Some([y / unit, x / unit, theta / unit * 1f64.to_degrees()])
 }

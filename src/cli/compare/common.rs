@@ -87,10 +87,10 @@ pub(super) fn metrics_of(
                     None => series.push(PlottedSeries::new(label, vec![point])),
                 }
             }
-            panels.push(TimePanel {
-                y_label: format!("{}: {name}", force.force_name()),
+            panels.push(TimePanel::new(
+                format!("{}: {name}", force.force_name()),
                 series,
-            });
+            ));
         }
     }
     metrics_figure(title, &panels)
@@ -102,18 +102,13 @@ pub(super) fn section(
     statements: &[Statement],
     figures: Vec<(String, Figure)>,
 ) -> PageSection {
+    let row = |s: &Statement| vec![s.section.to_owned(), s.thesis.to_owned(), s.here.clone()];
+    let rows = statements.iter().map(row).collect();
+    let figures = figures.into_iter();
+    let figures = figures.map(|(caption, figure)| (caption.replace('_', " "), figure));
     PageSection {
-        title: title.to_owned(),
-        header: "section | thesis | here",
-        rows: statements
-            .iter()
-            .map(|s| vec![s.section.to_owned(), s.thesis.to_owned(), s.here.clone()])
-            .collect(),
-        figures: figures
-            .into_iter()
-            .map(|(caption, figure)| (caption.replace('_', " "), figure))
-            .collect(),
-        ..PageSection::default()
+        figures: figures.collect(),
+        ..PageSection::table(title, "section | thesis | here", rows)
     }
 }
 

@@ -57,14 +57,13 @@ fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
                 model: "measured".into(),
                 points: points.collect(),
             },
-            reference_is_points: true,
             tolerance: Some((0.15, 5.0)),
             models: entry.curves.clone(),
         }
     });
     let (deck, speed) = (&results.deck, results.speed_m_s);
     let title = format!("{deck} at {speed:.2} m/s: transfer functions");
-    transfer_figure(&title, "Frequency (Hz)", &plots.collect::<Vec<_>>())
+    transfer_figure(&title, &plots.collect::<Vec<_>>())
 }
 
 /// Derivatives over reduced velocity (Figures 3.23 to 3.26).
@@ -113,10 +112,7 @@ fn panel(results: &ModelsComparison, history: &History) -> TimePanel {
     let mut all = vec![series("measured", &history.measured)];
     let models = results.models.iter().zip(&history.predicted);
     all.extend(models.map(|(m, values)| series(&m.name, values)));
-    TimePanel {
-        y_label: format!("{} ({unit})", history.force.force_name()),
-        series: all,
-    }
+    TimePanel::new(format!("{} ({unit})", history.force.force_name()), all)
 }
 
 /// The section of the page of the thesis.

@@ -156,12 +156,13 @@ fn taking_part(shares: &[ModeShare]) -> PageSection {
     };
     let text =
         "Shares of the kinetic energy at the onset; phases to the mode with the largest share.";
+    let (title, header) = (
+        "Modes that take part in the flutter",
+        "mode | f in still air, Hz | share % | phase °",
+    );
     PageSection {
-        title: "Modes that take part in the flutter".to_owned(),
         text: vec![text.to_owned()],
-        header: "mode | f in still air, Hz | share % | phase °",
-        rows: named.map(row).collect(),
-        ..PageSection::default()
+        ..PageSection::table(title, header, named.map(row).collect())
     }
 }
 
@@ -178,12 +179,9 @@ fn fewer(left_out: &[LeftOut], full: Option<f64>) -> PageSection {
             change.unwrap_or("–".to_owned()),
         ]
     };
-    PageSection {
-        title: "Onset with fewer modes".to_owned(),
-        header: "share from, % | modes | V m/s | change %",
-        rows: left_out.iter().map(row).collect(),
-        ..PageSection::default()
-    }
+    let header = "share from, % | modes | V m/s | change %";
+    let rows = left_out.iter().map(row).collect();
+    PageSection::table("Onset with fewer modes", header, rows)
 }
 
 fn data(facts: &BridgeSummary) -> PageSection {
@@ -199,12 +197,9 @@ fn data(facts: &BridgeSummary) -> PageSection {
             s.licence.lines().next().unwrap_or("").to_owned(),
         ]
     };
-    PageSection {
-        title: "Sections and their data".to_owned(),
-        header: "section | B m | tested K = ωB/V | forces from | licence",
-        rows: facts.sections.iter().map(row).collect(),
-        ..PageSection::default()
-    }
+    let header = "section | B m | tested K = ωB/V | forces from | licence";
+    let rows = facts.sections.iter().map(row).collect();
+    PageSection::table("Sections and their data", header, rows)
 }
 
 fn modes(facts: &BridgeSummary) -> PageSection {

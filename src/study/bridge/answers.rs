@@ -12,7 +12,7 @@ use crate::flutter::{
     pk_onset, static_part, trace_modes, unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::verdict::{ModesLeftOut, UntestedParts};
+use crate::verdict::{MeanRotation, ModesLeftOut, UntestedParts};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ pub struct BridgeFlutter {
     pub growth: Option<UnwantedGrowth>,
     /// Mean rotation where it is farthest from the tests, at the onset or else at the required speed, where static coefficients are
     /// stated.
-    pub mean_rotation: Option<BridgeRotation>,
+    pub mean_rotation: Option<MeanRotation>,
     /// What constraints on the fits of sections did to the onset; `None` where none hold one, or models were read from files.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constraints: Option<MovedOnset>,
@@ -127,34 +127,23 @@ impl BridgeFlutter {
     }
 }
 
-/// Rotation of a bridge in the mean wind.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct BridgeRotation {
-    /// Wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Where it is farthest from that of the tests, deg; nose-up positive.
-    pub rotation_deg: f64,
-    /// That of the tests there, deg; 0 where it is not stated.
-    pub tested_deg: f64,
-}
-
 /// The rotation in the mean wind; `None` where sections state no static coefficients.
 fn mean_rotation(
     study: &BridgeStudy,
     at_rest: &TransferMatrix,
     speed_m_s: f64,
-) -> Result<Option<BridgeRotation>> {
+) -> Result<Option<MeanRotation>> {
     let Some(coefficients) = study.static_coefficients() else {
         return Ok(None);
     };
     let mean = static_deflection(&study.by_model, &coefficients, at_rest, speed_m_s)?;
     let nodes = mean.iter().zip(study.tested_angles_deg());
-    let rotations = nodes.map(|(deflection, tested_deg)| BridgeRotation {
+    let rotations = nodes.map(|(deflection, tested_deg)| MeanRotation {
         speed_m_s,
         rotation_deg: deflection[2].to_degrees(),
-        tested_deg,
+        tested_deg: Some(tested_deg),
     });
-    let away = |r: &BridgeRotation| (r.rotation_deg - r.tested_deg).abs();
+    let away = |r: &MeanRotation| (r.rotation_deg - r.tested_deg.unwrap_or(0.0)).abs();
     Ok(rotations.max_by(|a, b| away(a).total_cmp(&away(b))))
 }
 
