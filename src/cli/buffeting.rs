@@ -1,17 +1,16 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed, and the page of it.
 
 use super::report::folder::today;
-use super::vocabulary::{Answer, OutputDir, Progress, TextTable};
+use super::vocabulary::{
+    Answer, Error, Figure, OutputDir, PageSection, Progress, Result, SectionsPage, Study,
+    TextTable, Verdict, WindStudy, counted, rendered,
+};
 use super::wind::WindArgs;
 use super::{figures, headline};
 use crate::buffeting::peak_factor;
-use crate::error::{Error, Result, counted};
 use crate::files::report_block::ReportBlock;
-use crate::report::{
-    Figure, PageSection, SectionsPage, buffeting_rms_figure, buffeting_spectra_figure, rendered,
-};
-use crate::study::{BuffetingStudy, SectionBuffetingBlock, Study, WindStudy, buffeting_study};
-use crate::verdict::Verdict;
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
+use crate::study::{BuffetingStudy, SectionBuffetingBlock, buffeting_study};
 use std::fmt::Write as _;
 use std::path::Path;
 

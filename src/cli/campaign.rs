@@ -2,10 +2,8 @@
 
 mod virtual_campaign;
 
-use super::vocabulary::{Answer, Progress};
+use super::vocabulary::{Answer, Dof, Progress, Result, counted};
 use crate::cli::text::to_tenths_of_mm;
-use crate::error::{Result, counted};
-use crate::section::Dof;
 use crate::wind_tunnel::RawRecording;
 use crate::wind_tunnel::campaign::{Campaign, CampaignReading};
 use serde_json::json;

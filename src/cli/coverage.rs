@@ -1,7 +1,6 @@
 //! `aerodeck coverage`: are the intervals reliable?
 
-use super::vocabulary::{Answer, Progress, TextTable, spelt};
-use crate::error::Result;
+use super::vocabulary::{Answer, Progress, Result, TextTable, spelt};
 use crate::uncertainty::{
     CoveragePlan, CoverageReport, FamilyPlan, FamilyReport, RangeCount, Truth, coverage,
     family_coverage,

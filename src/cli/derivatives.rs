@@ -1,18 +1,17 @@
 //! `aerodeck derivatives`: tables of derivatives, shown and converted between notations.
 
 use super::figures;
-use super::vocabulary::{Answer, OutputDir, folder_of};
+use super::vocabulary::{Answer, Error, OutputDir, Result, ensure, folder_of, sentences};
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedDerivative, ExpressedPoint, ExpressedTable, Notation,
     StatedConvention,
 };
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
-use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::{
     ReadOptions, embedded, file_and_sheet, is_table_file, named_sheet, read_table_with,
     template_bytes, workbook_bytes_in, write_csv_in,
 };
-use crate::plausibility::{of_table, sentences};
+use crate::plausibility::of_table;
 use crate::report::axes_sketch;
 use crate::signal::extremes;
 use clap::Subcommand;

@@ -1,15 +1,15 @@
 //! `aerodeck flutter`: curves and onsets of the trained models of a study.
 
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
-use super::{headline, result_files, routes, select, stages, text};
-use crate::error::Result;
-use crate::flutter::OnsetMethod;
-use crate::study::{
-    Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, attempt, route_table,
-    saved_moved_onset, saved_uncertainty, section_evidence, state_route_intervals,
+use super::vocabulary::{
+    Answer, FlutterStudy, OnsetMethod, OutputDir, Progress, Result, Study, StudyArgs, TrainedModel,
+    Verdict, attempt,
 };
-use crate::trained_model::TrainedModel;
-use crate::verdict::{Evidence, Verdict};
+use super::{headline, result_files, routes, select, stages, text};
+use crate::study::{
+    Deck, KnownUncertainty, StageFailure, route_table, saved_moved_onset, saved_uncertainty,
+    section_evidence, state_route_intervals,
+};
+use crate::verdict::Evidence;
 use std::fmt::Write as _;
 use std::path::Path;
 

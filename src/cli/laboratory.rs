@@ -1,13 +1,9 @@
 //! The laboratory's report of `process`, printed and as a page: what was found odd, every run, the derivatives with their errors, the
 //! stages of each run.
 
-use super::vocabulary::OutputDir;
+use super::vocabulary::{Dof, Figure, OutputDir, PageSection, SectionsPage, counted, file_name};
 use crate::aerodynamics::derivatives::Derivative;
-use crate::error::counted;
-use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
-use crate::report::{Figure, PageSection, SectionsPage};
-use crate::section::Dof;
 use crate::signal::median;
 use crate::wind_tunnel::RawCampaign;
 use crate::wind_tunnel::processing::{ProcessingReport, RunReport};

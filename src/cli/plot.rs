@@ -1,9 +1,9 @@
 //! `aerodeck plot`: columns of a CSV file of results over one of them.
 
 use super::figures;
-use super::vocabulary::{Answer, OutputDir, folder_of};
-use crate::error::{Error, Result};
-use crate::report::{PlottedSeries, TimePanel, time_history_figure};
+use super::vocabulary::{
+    Answer, Error, OutputDir, PlottedSeries, Result, TimePanel, folder_of, time_history_figure,
+};
 use std::path::Path;
 
 /// Panels of one figure at most.

@@ -1,22 +1,17 @@
 //! `aerodeck quasi-steady`: equilibrium, linear model, onset and a nonlinear run from static coefficients.
 
-use super::vocabulary::{Answer, OutputDir, Progress, TextTable, motion_columns};
+use super::vocabulary::{
+    Answer, DerivativePlot, Dof, Error, Figure, FlutterSearch, FlutterStudy, OutputDir,
+    PlottedSeries, Progress, Result, TextTable, TimePanel, WindStudy, attempt, counted,
+    motion_columns, time_history_figure,
+};
 use super::wind::WindArgs;
 use super::{figures, headline, text};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
-use crate::error::{Error, Result, counted};
 use crate::files::gusts::write_gusts;
-use crate::flutter::FlutterSearch;
-use crate::report::{
-    DerivativePlot, Figure, PlottedSeries, TimePanel, derivatives_figure, equilibrium_figure,
-    time_history_figure, vf_vg_figure,
-};
-use crate::section::Dof;
-use crate::study::{
-    FlutterStudy, QuasiSteadyStudy, SimulatedMotion, WindStudy, attempt, quasi_steady_study,
-    simulated_motion,
-};
+use crate::report::{derivatives_figure, equilibrium_figure, vf_vg_figure};
+use crate::study::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
 use std::fmt::Write as _;
 
 /// Stem of the nonlinear run, and the gusts in it.

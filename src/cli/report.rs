@@ -13,14 +13,12 @@ use super::measured_forces::FORCES;
 use super::result_files::{CURVES, DERIVATIVES, FIGURE, RESPONSE, ROOTS};
 use super::stages::{FMU_FILE, MODEL_FILE};
 use super::summary::Summary;
-use super::vocabulary::{Answer, OutputDir, list};
-use crate::error::{Error, Result};
-use crate::files::text::read_text;
+use super::vocabulary::{
+    Answer, Error, OutputDir, Recommendation, Result, Study, list, read_text, rendered,
+};
 use crate::fmu::importer::Fmu;
 use crate::fmu::package::with_report;
-use crate::report::{PageFigure, StudyPage, rendered, sections_of, summary_figure};
-use crate::selection::Recommendation;
-use crate::study::Study;
+use crate::report::{PageFigure, StudyPage, sections_of, summary_figure};
 use folder::{REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, curves_of, first_derivatives, known, of_svg, round, row, sentence_row, sliders};
 use std::collections::BTreeMap;

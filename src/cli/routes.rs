@@ -1,9 +1,8 @@
 //! The table of all routes and the onset cards, in words.
 
 use super::text::interval;
-use super::vocabulary::{TextTable, speed_or};
-use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
-use crate::section::Dof;
+use super::vocabulary::{Dof, FlutterSearch, TextTable, speed_or};
+use crate::flutter::{ModeBranch, ModeRatio, Onset, OnsetInterval, SanityLines};
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 

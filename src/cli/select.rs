@@ -2,13 +2,14 @@
 
 mod text;
 
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs, Written, list};
-use crate::error::{Error, Result, ensure};
-use crate::flutter::FlutterSearch;
+use super::vocabulary::{
+    Answer, Error, FlutterSearch, OutputDir, Progress, Recommendation, Result, Study, StudyArgs,
+    Written, ensure, list,
+};
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
-use crate::selection::{Recommendation, Selection, metric_grid, select};
+use crate::selection::{Selection, metric_grid, select};
 use crate::signal::extremes;
-use crate::study::{Deck, ModelBlock, RecordSet, Study};
+use crate::study::{Deck, ModelBlock, RecordSet};
 use crate::wind_tunnel::{Record, RecordSource};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

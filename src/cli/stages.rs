@@ -2,23 +2,22 @@
 
 use super::figures;
 use super::report::folder::digest;
-use super::vocabulary::{OutputDir, Progress};
+use super::vocabulary::{
+    Error, Export, FlutterStudy, Label, OutputDir, Progress, Result, Runtime, Study, TrainedModel,
+    Verdict, ensure, file_name,
+};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::write_csv;
-use crate::files::text::file_name;
 use crate::files::toml_lines::of_a_kind_of_ours;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{Export, Label, Runtime, package};
+use crate::fmu::package::package;
 use crate::identification;
 use crate::study::{
-    Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, Study, TrainedWithReport,
-    UNCERTAINTY, flutter_study, interval_of, is_of_a_file, state_intervals, train_one,
+    Deck, FITS, KnownUncertainty, RecordSet, StageFailure, TrainedWithReport, UNCERTAINTY,
+    flutter_study, interval_of, is_of_a_file, state_intervals, train_one,
 };
-use crate::trained_model::TrainedModel;
-use crate::verdict::Verdict;
 use crate::wind_tunnel::{Record, RecordFile, RecordSource};
 use std::ffi::OsString;
 use std::path::Path;

@@ -2,20 +2,19 @@
 
 use super::report::folder::{REPORT, SUMMARY, today};
 use super::summary::{FitSummary, Summary};
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
+use super::vocabulary::{
+    Answer, Error, FlutterSearch, FlutterStudy, OnsetMethod, OutputDir, Progress, Recommendation,
+    Result, Study, StudyArgs, Verdict, attempt, sentences,
+};
 use super::{
     buffeting, figures, headline, measured_forces, report, result_files, select, stages, study_run,
     text,
 };
-use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, OnsetMethod};
-use crate::plausibility::sentences;
-use crate::selection::Recommendation;
 use crate::study::{
-    Deck, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport, attempt,
-    interval_of, section_evidence, stepped_onset, study_findings,
+    Deck, RecordSet, StageFailure, SteppedOnset, TrainedWithReport, interval_of, section_evidence,
+    stepped_onset, study_findings,
 };
-use crate::verdict::{Evidence, Verdict};
+use crate::verdict::Evidence;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -3,15 +3,13 @@
 use super::headline;
 use super::study_run::BESIDE;
 use super::summary::Summary;
-use super::vocabulary::{TextTable, Written, list, speed_or};
-use crate::error::counted;
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnwantedGrowth};
-use crate::identification::{ConstraintReport, FitReport};
-use crate::section::Dof;
-use crate::selection::Recommendation;
-use crate::study::{
-    Deck, Divergence, FlutterStudy, KnownUncertainty, StageFailure, Study, TrainedWithReport,
+use super::vocabulary::{
+    Dof, FlutterStudy, OnsetMethod, Recommendation, Study, TextTable, Written, counted, list,
+    speed_or,
 };
+use crate::flutter::{Onset, OnsetInterval, UnwantedGrowth};
+use crate::identification::{ConstraintReport, FitReport};
+use crate::study::{Deck, Divergence, KnownUncertainty, StageFailure, TrainedWithReport};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 

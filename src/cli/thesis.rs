@@ -1,22 +1,21 @@
 //! `aerodeck thesis`: the headline of the source document, repeated, with a page of its figures and tables that can be computed, its
 //! numbers beside ours.
 
-use super::vocabulary::{Answer, OutputDir, Progress, Temporary, list};
+use super::vocabulary::{
+    Answer, Dof, Error, Figure, FlutterStudy, OutputDir, PageSection, Progress, Result,
+    SectionsPage, Study, Temporary, list, rendered,
+};
 use super::{headline, result_files, stages, text};
 use crate::aerodynamics::laguerre::discrete_memory;
 use crate::cli::compare::thesis_comparisons;
 use crate::cli::laboratory::drawn;
 use crate::cli::result_files::{FIGURE, RESPONSE, ROOTS};
 use crate::cli::select::parameter_maps;
-use crate::error::{Error, Result};
 use crate::identification::{Grid, GridAxis, TimeWeights};
 use crate::reference::{OF_THE_DECKS, first_order_example, laguerre_functions};
-use crate::report::{
-    Figure, PageSection, SectionsPage, first_order_figures, laguerre_figures, rendered,
-};
-use crate::section::Dof;
+use crate::report::{first_order_figures, laguerre_figures};
 use crate::selection::metric_grid;
-use crate::study::{Deck, FlutterStudy, RecordSet, Study, thesis_study_text};
+use crate::study::{Deck, RecordSet, thesis_study_text};
 use crate::wind_tunnel::RecordSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,9 @@
 //! `aerodeck train`: the models of a study from its records and tables.
 
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
+use super::vocabulary::{Answer, OutputDir, Progress, Result, StudyArgs, attempt};
 use super::{select, stages, text};
-use crate::error::Result;
 use crate::fmu::package::growth_of;
-use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
+use crate::study::{Deck, ModelGrowth, RecordSet};
 
 /// Runs the command.
 pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {

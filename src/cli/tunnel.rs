@@ -1,8 +1,7 @@
 //! `aerodeck tunnel`: records of the virtual wind tunnel.
 
 use super::stages;
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
-use crate::error::Result;
+use super::vocabulary::{Answer, OutputDir, Progress, Result, StudyArgs};
 use crate::study::Deck;
 use std::fmt::Write as _;
 

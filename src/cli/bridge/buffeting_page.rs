@@ -1,11 +1,11 @@
 //! The page of a response to turbulence; the report of the bridge takes it up.
 
 use crate::cli::report::folder::{digest, today};
-use crate::error::{Result, counted};
-use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
-use crate::section::Dof;
-use crate::study::bridge::{BridgeBuffeting, BridgeStudy};
-use crate::verdict::Verdict;
+use crate::cli::vocabulary::{
+    BridgeStudy, Dof, PageSection, Result, SectionsPage, Verdict, counted,
+};
+use crate::report::{buffeting_spectra_figure, envelope_figure};
+use crate::study::bridge::BridgeBuffeting;
 use std::fmt::Write as _;
 
 /// Motions with their unit and the factor to it.

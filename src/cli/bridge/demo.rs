@@ -6,14 +6,14 @@ use super::flutter::{computed, leave};
 use super::summary::BridgeSummary;
 use super::text::{MORE, text};
 use crate::cli::stages;
-use crate::cli::vocabulary::{Answer, OutputDir, Progress};
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{
+    Answer, BridgeStudy, Error, Label, OutputDir, Progress, Result, Runtime, Study, TrainedModel,
+    Verdict,
+};
 use crate::files::bridge::BridgeFile;
-use crate::fmu::package::{Label, Runtime, package};
-use crate::study::bridge::{BridgeExportOptions, BridgeFlutter, BridgeStudy, demo_bridge_text};
-use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, Study, demo_study_text};
-use crate::trained_model::TrainedModel;
-use crate::verdict::Verdict;
+use crate::fmu::package::package;
+use crate::study::bridge::{BridgeExportOptions, BridgeFlutter, demo_bridge_text};
+use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, demo_study_text};
 use std::path::Path;
 
 const BRIDGE_FILE: &str = "bridge.toml";

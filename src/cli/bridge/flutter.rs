@@ -11,21 +11,18 @@ use crate::cli::report::folder::{REPORT, SUMMARY, is_of_a_study};
 use crate::cli::report::{self, page_of};
 use crate::cli::result_files::{beside_models, curves_csv, over_v_hat};
 use crate::cli::text::ending;
-use crate::cli::vocabulary::{Answer, OutputDir, Progress};
-use crate::error::Result;
-use crate::files::text::csv_cell;
+use crate::cli::vocabulary::{
+    Answer, BridgeStudy, OutputDir, PlottedSeries, Progress, Result, TimePanel, Verdict, csv_cell,
+    derivative_lines,
+};
 use crate::flutter::ModePoint;
 use crate::report::{
-    PlottedSeries, TimePanel, bridge_curves_figure, bridge_roots_figure, flutter_motion_figure,
-    scaled_history_figure,
+    bridge_curves_figure, bridge_roots_figure, flutter_motion_figure, scaled_history_figure,
 };
 use crate::study::bridge::BridgeMotion;
 use crate::study::bridge::{
-    BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
-    bridge_flutter,
+    BridgeFlutter, DerivativeScatter, Scatter, ScatteredOnset, block_table, bridge_flutter,
 };
-use crate::study::derivative_lines;
-use crate::verdict::Verdict;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;

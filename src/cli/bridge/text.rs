@@ -2,11 +2,9 @@
 
 use crate::cli::headline;
 use crate::cli::text::{figures, of_onsets};
-use crate::cli::vocabulary::speed_or;
-use crate::error::counted;
-use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
-use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy, NAMED_SHARE};
-use crate::verdict::Verdict;
+use crate::cli::vocabulary::{BridgeStudy, FlutterSearch, Verdict, counted, speed_or};
+use crate::flutter::{ModeBranch, OnsetInterval};
+use crate::study::bridge::{BridgeAnswer, BridgeFlutter, NAMED_SHARE};
 use std::fmt::Write as _;
 
 /// Modes with less of the kinetic energy are not named where nobody asked for more.

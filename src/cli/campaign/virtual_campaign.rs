@@ -1,10 +1,8 @@
 //! `aerodeck campaign virtual`: a raw campaign with a known truth.
 
 use crate::aerodynamics::{FlatPlate, RationalModel};
-use crate::cli::vocabulary::{Answer, OutputDir, Progress, spelt};
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{Answer, Dof, Error, OutputDir, Progress, Result, spelt};
 use crate::files::derivatives::named_table;
-use crate::section::Dof;
 use crate::wind_tunnel::campaign::{FileFormat, write_virtual_campaign};
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
 use clap::builder::PossibleValue;

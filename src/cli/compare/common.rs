@@ -1,13 +1,13 @@
 //! What the comparisons of the thesis share: arguments, tables, figures of metrics, the section of a page.
 
-use crate::cli::vocabulary::TextTable;
+use crate::cli::vocabulary::{
+    Dof, Figure, PageSection, PlottedSeries, Result, TextTable, TimePanel,
+};
 use crate::comparison::forces::{
     CompareOptions, ForceMetrics, Score, ScoreSummary, Scoring, Statement,
 };
-use crate::error::Result;
 use crate::identification::DiscreteFit;
-use crate::report::{Figure, PageSection, PlottedSeries, TimePanel, metrics_figure};
-use crate::section::Dof;
+use crate::report::metrics_figure;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 

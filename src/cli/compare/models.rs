@@ -2,18 +2,15 @@
 
 use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
 use crate::cli::figures;
-use crate::cli::vocabulary::{Answer, OutputDir, Progress};
+use crate::cli::vocabulary::{
+    Answer, DerivativePlot, Dof, Figure, OutputDir, PageSection, PlottedSeries, Progress, Result,
+    TimePanel, counted, csv_cell, time_history_figure,
+};
 use crate::comparison::forces::{
     CompareOptions, History, ModelsComparison, Score, compare_models, in_magnitude_band,
     in_phase_band, score_table,
 };
-use crate::error::{Result, counted};
-use crate::files::text::csv_cell;
-use crate::report::{
-    DerivativePlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve, TransferPlot,
-    derivatives_figure, time_history_figure, transfer_figure,
-};
-use crate::section::Dof;
+use crate::report::{TransferCurve, TransferPlot, derivatives_figure, transfer_figure};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -1,7 +1,6 @@
 //! `aerodeck fmu replay`: the runs that an archive carries, repeated.
 
-use crate::cli::vocabulary::{Answer, Progress};
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{Answer, Error, Progress, Result};
 use crate::fmu::importer::{Fmu, LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 use crate::fmu::package::COMPONENT;
 use serde::Serialize;

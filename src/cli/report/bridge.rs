@@ -8,12 +8,10 @@ use crate::cli::bridge::files::{
     RESPONSE_FIGURE, ROOTS_FIGURE,
 };
 use crate::cli::bridge::summary::{BridgeSummary, ModeFacts, SectionFacts};
-use crate::error::Result;
+use crate::cli::vocabulary::{PageSection, Result, rendered};
 use crate::files::bridge::{BridgeFile, DampingRatios};
 use crate::fmu::importer::Fmu;
-use crate::report::{
-    PageCurve, PageFigure, PageSection, StudyPage, rendered, sections_of, summary_figure,
-};
+use crate::report::{PageCurve, PageFigure, StudyPage, sections_of, summary_figure};
 use crate::study::bridge::ModeShare;
 use crate::study::bridge::{LeftOut, NAMED_SHARE};
 use std::path::Path;

@@ -2,11 +2,10 @@
 
 use crate::cli::result_files::CURVES;
 use crate::cli::text::interval;
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{Error, Figure, Result, Study};
 use crate::flutter::{ModeBranch, Onset, OnsetInterval};
 use crate::fmu::package::live_module;
-use crate::report::{Figure, PageCurve, PageFigure};
-use crate::study::Study;
+use crate::report::{PageCurve, PageFigure};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::json;

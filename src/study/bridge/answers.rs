@@ -328,14 +328,9 @@ fn fewer_modes(
     search: &OnsetSearch,
 ) -> Result<Vec<LeftOut>> {
     let (bridge, mut all) = (&study.by_model, Vec::<LeftOut>::new());
-    let Some(motion) = &full.motion else {
-        return Ok(all);
-    };
-    for below_share in SHARES {
-        let kept = motion
-            .modes
-            .iter()
-            .filter(|m| m.energy_share >= below_share);
+    let shares = full.motion.as_ref().map_or(&[][..], |m| &m.modes);
+    for below_share in SHARES.into_iter().filter(|_| !shares.is_empty()) {
+        let kept = shares.iter().filter(|m| m.energy_share >= below_share);
         let mut modes: Vec<usize> = kept.map(|m| m.mode).collect();
         modes.sort_unstable();
         if modes.len() == bridge.modes.len() || all.last().is_some_and(|l| l.modes == modes) {
