@@ -72,15 +72,14 @@ fn verdict(
     failed: &[StageFailure],
 ) -> Result<Verdict> {
     let name = &study.exported()?.name;
-    let place = models.iter().position(|m| m.name == *name);
-    let own = place.map(|i| &models[i]);
+    let mut all = models.iter().zip(known);
+    let (own, known) = all.find(|(m, _)| m.name == *name).unzip();
     let with = own.and_then(|m| results.search_of(&m.name, OnsetMethod::Eigenvalues));
     let moved = own.zip(with).map_or(Ok(None), |(model, with)| {
         let (section, search) = (&study.section, study.speeds().search());
         saved_moved_onset(model, &[folder.to_owned()], section, &search, &with)
     })?;
     let failed = [failed, &results.failed].concat();
-    let known = place.and_then(|i| known.get(i));
     Ok(Verdict::judge(&Evidence {
         constraints: moved,
         ..section_evidence(study, deck, results, own, known, &failed)

@@ -24,10 +24,9 @@ pub(super) fn laboratory_page(
         let figure = drawn(out, &format!("processing/{}", file_name(&run.run)))?;
         Some((run.run.clone(), figure))
     });
-    let section = |title: &str| PageSection {
-        title: title.to_owned(),
-        ..PageSection::default()
-    };
+    let section = |title| PageSection::table(title, "", Vec::new());
+    let lag = format!("Lag of the force channels {:.3} ms.", 1e3 * report.lag_s);
+    let runs = report.runs.iter().map(run_row);
     SectionsPage {
         title: format!("{}: processing of a campaign", raw.section),
         subtitle: format!(
@@ -47,13 +46,8 @@ pub(super) fn laboratory_page(
                 ..section("Remarks")
             },
             PageSection {
-                text: vec![format!(
-                    "Lag of the force channels {:.3} ms.",
-                    1e3 * report.lag_s
-                )],
-                header: "run | what was found",
-                rows: report.runs.iter().map(run_row).collect(),
-                ..section("Runs")
+                text: vec![lag],
+                ..PageSection::table("Runs", "run | what was found", runs.collect())
             },
             PageSection {
                 text: vec![
@@ -66,11 +60,11 @@ pub(super) fn laboratory_page(
                 figures: stages.collect(),
                 ..section("Stages of the runs")
             },
-            PageSection {
-                header: "derivative | V m/s | f Hz | V̂ | value | standard error",
-                rows: estimates.iter().map(estimate_row).collect(),
-                ..section("Every derivative at every test point")
-            },
+            PageSection::table(
+                "Every derivative at every test point",
+                "derivative | V m/s | f Hz | V̂ | value | standard error",
+                estimates.iter().map(estimate_row).collect(),
+            ),
         ],
         ..SectionsPage::default()
     }

@@ -14,7 +14,7 @@ use super::result_files::{CURVES, DERIVATIVES, FIGURE, RESPONSE, ROOTS};
 use super::stages::{FMU_FILE, MODEL_FILE};
 use super::summary::Summary;
 use super::vocabulary::{
-    Answer, Error, OutputDir, Recommendation, Result, Study, list, read_text, rendered,
+    Answer, Error, OutputDir, Recommendation, Result, Study, read_text, rendered,
 };
 use crate::fmu::importer::Fmu;
 use crate::fmu::package::with_report;
@@ -37,8 +37,7 @@ pub(super) fn run(folder: &Path, pdf: bool) -> Result<Answer> {
         printed::print(&at, &pdf)?;
     }
     out.write(REPORT, page)?;
-    let written = out.commit()?;
-    Answer::new(list(&written), &serde_json::json!({ "files": written }))
+    out.answer(String::new(), serde_json::json!({}))
 }
 
 /// Writes the page of the results that are staged, beside their archive and into it.

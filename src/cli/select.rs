@@ -10,7 +10,7 @@ use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeF
 use crate::selection::{Selection, metric_grid, select};
 use crate::signal::extremes;
 use crate::study::{Deck, ModelBlock, RecordSet};
-use crate::wind_tunnel::{Record, RecordSource};
+use crate::wind_tunnel::RecordSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 pub(super) use text::parameter_maps;
@@ -86,17 +86,13 @@ enum ModelKind {
 pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
-    let made: Vec<Record>;
-    let measured: RecordSet;
-    let mut note = None;
-    let records: Vec<&dyn RecordSource> = if study.deck.records.is_empty() {
-        made = deck.virtual_records(&study)?;
-        made.iter().map(|r| r as _).collect()
-    } else {
-        measured = RecordSet::measured(&study)?;
-        note = measured.note.as_ref().map(|n| format!("note: {n}\n"));
-        measured.select(study.deck.speed_groups.as_deref())?
+    let made = study.deck.records.is_empty();
+    let all = match made {
+        true => RecordSet::in_memory(deck.virtual_records(&study)?),
+        false => RecordSet::measured(&study)?,
     };
+    let records = all.select(study.deck.speed_groups.as_deref().filter(|_| !made))?;
+    let note = all.note.as_ref().map(|n| format!("note: {n}\n"));
     let frequency_hz = compared_frequency_hz(args.frequency, &records)?;
     let (grid, selection) = judge(&args.choice, &study, &deck, &records, progress)?;
     let metrics = progress.during("comparing forces", || {

@@ -9,7 +9,7 @@ use super::vocabulary::{
 };
 use crate::flutter::{Onset, OnsetInterval, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
-use crate::study::{Deck, Divergence, KnownUncertainty, StageFailure, TrainedWithReport};
+use crate::study::{Deck, Divergence, KnownUncertainty, StageFailure};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -113,11 +113,6 @@ fn details(study: &Study, summary: &Summary) -> String {
         let _ = writeln!(text, "{}", stepped.explain());
     }
     text
-}
-
-/// As [`fit`], of a model that was trained just now.
-pub(super) fn fit_of(trained: &TrainedWithReport) -> String {
-    fit(&trained.model.name, &trained.report, &trained.uncertainty)
 }
 
 /// One fit.

@@ -36,8 +36,8 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
     let trained = stages::train(&study, &deck, all, &mut out, &mut failed, progress)?;
     let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
     let mut text = format!("{}\n\n", study.name);
-    for result in &trained {
-        text.push_str(&text::fit_of(result));
+    for t in &trained {
+        text.push_str(&text::fit(&t.model.name, &t.report, &t.uncertainty));
     }
     text.push('\n');
     text.push_str(&text::onsets(&results));

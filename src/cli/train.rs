@@ -32,15 +32,14 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
     text.push_str(&text::selected(selection.as_ref()));
     let mut growths = Vec::new();
     for result in &trained {
-        text.push_str(&text::fit_of(result));
+        let name = &result.model.name;
+        text.push_str(&text::fit(name, &result.report, &result.uncertainty));
         let growth = growth_of(&result.model);
-        let stage = format!("scan for growth of {}", result.model.name);
+        let stage = format!("scan for growth of {name}");
         if let Some(growth) = attempt(&mut failed, stage, growth)? {
-            text.push_str(&text::growth(&result.model.name, &growth));
-            growths.push(ModelGrowth {
-                model: result.model.name.clone(),
-                growth,
-            });
+            text.push_str(&text::growth(name, &growth));
+            let model = name.clone();
+            growths.push(ModelGrowth { model, growth });
         }
     }
     text.push_str(&text::failures(&failed));

@@ -32,15 +32,18 @@ pub(super) fn run(path: &Path, progress: &Progress) -> Result<Answer> {
     let mut platforms = Vec::new();
     for platform in fmu.platforms() {
         let on = fmu.on(&platform);
-        platforms.push(match on.binary() {
-            Err(_) => PlatformReplay {
-                platform,
-                ran: false,
-                same: false,
-                runs: Vec::new(),
-                refusal: None,
-            },
-            Ok(_) => replayed(&on, platform),
+        let done = on.binary().is_ok().then(|| replay(&on));
+        let ran = done.is_some();
+        let (runs, refusal) = match done.transpose() {
+            Ok(runs) => (runs.unwrap_or_default(), None),
+            Err(e) => (Vec::new(), Some(e.to_string())),
+        };
+        platforms.push(PlatformReplay {
+            platform,
+            ran,
+            same: ran && refusal.is_none() && runs.iter().all(|r| r.same),
+            runs,
+            refusal,
         });
     }
     drop(stage);
@@ -53,20 +56,6 @@ pub(super) fn run(path: &Path, progress: &Progress) -> Result<Answer> {
     let json =
         serde_json::json!({ "fmu": file, "as_the_exporter_meant": same, "platforms": platforms });
     Ok(Answer::new(text(&file, &platforms), &json)?.passed_if(same))
-}
-
-fn replayed(fmu: &Fmu, platform: String) -> PlatformReplay {
-    let (runs, refusal) = match replay(fmu) {
-        Ok(runs) => (runs, None),
-        Err(e) => (Vec::new(), Some(e.to_string())),
-    };
-    PlatformReplay {
-        platform,
-        ran: true,
-        same: refusal.is_none() && runs.iter().all(|r| r.same),
-        runs,
-        refusal,
-    }
 }
 
 /// The run that is furthest off.
