@@ -82,14 +82,15 @@ pub(crate) fn train(
     let none = RecordSet::none();
     let mut first_error = None;
     for (i, block) in study.models.iter().enumerate() {
+        let file = format!("{}.json", block.slug());
+        let [of_model, of_fit] = [MODELS, FITS].map(|folder| Path::new(folder).join(&file));
+        let of_uncertainty = of_fit.with_file_name(format!("{}.{UNCERTAINTY}", block.slug()));
+        let exported = (block.name == study.exported()?.name).then_some(Path::new(MODEL_FILE));
         // what an earlier run left of a model is not of this one
-        for name in [MODELS, FITS].map(Path::new) {
-            out.outdated(name.join(format!("{}.json", block.slug())));
+        for name in [&of_model, &of_fit, &of_uncertainty] {
+            out.outdated(name);
         }
-        out.outdated(Path::new(FITS).join(format!("{}.{UNCERTAINTY}", block.slug())));
-        if block.name == study.exported()?.name {
-            out.outdated(MODEL_FILE);
-        }
+        exported.iter().for_each(|name| out.outdated(name));
         check_groups(study, i, deck, records)?;
         if records.is_none() && block.table.is_none() {
             let reason = "it needs records, which could not be made";
@@ -118,16 +119,14 @@ pub(crate) fn train(
                 continue;
             }
         };
-        let file = format!("{}.json", block.slug());
         let json = result.model.to_json()?;
-        out.write(Path::new(MODELS).join(&file), &json)?;
-        out.write_json(Path::new(FITS).join(&file), "fit", &result.report)?;
-        let file = Path::new(FITS).join(format!("{}.{UNCERTAINTY}", block.slug()));
+        out.write(of_model, &json)?;
+        out.write_json(of_fit, "fit", &result.report)?;
         if let Ok(uncertainty) = &result.uncertainty {
-            out.write(file, uncertainty.to_json()?)?;
+            out.write(of_uncertainty, uncertainty.to_json()?)?;
         }
-        if block.name == study.exported()?.name {
-            out.write(MODEL_FILE, json)?;
+        if let Some(name) = exported {
+            out.write(name, json)?;
         }
         trained.push(result);
         drop(stage);

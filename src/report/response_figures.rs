@@ -55,8 +55,7 @@ pub(crate) fn scaled_history_figure(
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     // few distinct lines may lie exactly on each other: later ones are dashed, so that the first shows through
     let ink = |i: usize| -> Result<Ink> { Ok(Ink::stroke(colour(PLACE, i)?, dash(i), 1.3)) };
-    let mut drawn = Vec::with_capacity(panels.len());
-    for panel in panels {
+    let draw = |panel: &TimePanel| {
         let mut drawing = Panel::new(Axis::new(t_label).tight(), Axis::new(&panel.y_label));
         drawing.level = Some(0.0);
         if scale < panel.series.len() {
@@ -65,8 +64,9 @@ pub(crate) fn scaled_history_figure(
             drawing.y.within = Some((-greatest, greatest));
         }
         drawing.add_labelled(&panel.series, &labels, ink)?;
-        drawn.push(drawing);
-    }
+        Ok(drawing)
+    };
+    let drawn = panels.iter().map(draw).collect::<Result<_>>()?;
     Drawing::stacked(PLACE, title, drawn, 170.0, vec![entries(&labels, ink)?])
 }
 

@@ -124,18 +124,17 @@ pub(super) fn curves_of(text: &str, own: &str) -> Result<(Vec<f64>, Vec<PageCurv
         .from_reader(text.as_bytes());
     let broken =
         |found: String| Error::input(CURVES, "curves as `aerodeck study` writes them", found);
-    let mut points: Vec<(String, String, f64, f64, f64)> = Vec::new();
-    for row in reader.records() {
+    let point = |row: csv::Result<csv::StringRecord>| {
         let row = row.map_err(|e| broken(e.to_string()))?;
+        let field = |i: usize| row.get(i).unwrap_or("");
         let number = |i: usize| {
-            let field = row.get(i).unwrap_or("");
-            field
-                .parse::<f64>()
-                .map_err(|_| broken(format!("`{field}`")))
+            let found = |_| broken(format!("`{}`", field(i)));
+            field(i).parse::<f64>().map_err(found)
         };
-        let name = |i: usize| row.get(i).unwrap_or("").to_owned();
-        points.push((name(0), name(1), number(2)?, number(3)?, number(4)?));
-    }
+        let name = |i: usize| field(i).to_owned();
+        Ok((name(0), name(1), number(2)?, number(3)?, number(4)?))
+    };
+    let points = reader.records().map(point).collect::<Result<Vec<_>>>()?;
     let mut speeds: Vec<f64> = points.iter().map(|p| p.2).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();

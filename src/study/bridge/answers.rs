@@ -147,9 +147,12 @@ fn mean_rotation(
     Ok(rotations.max_by(|a, b| away(a).total_cmp(&away(b))))
 }
 
-/// What was found; why nothing was stands among what failed.
-fn noted<T>(failed: &mut Vec<String>, what: &str, found: Result<T>) -> Option<T> {
-    found.map_err(|e| failed.push(format!("{what}: {e}"))).ok()
+/// What was found, or nothing; why nothing was stands among what failed.
+fn noted<T: Default>(failed: &mut Vec<String>, what: &str, found: Result<T>) -> T {
+    found.unwrap_or_else(|e| {
+        failed.push(format!("{what}: {e}"));
+        T::default()
+    })
 }
 
 /// Searches the onset by every route and says what takes part.
@@ -166,30 +169,21 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         || study.by_table.as_ref().map(|b| by_table(b, &search)),
         || by_model(&study.by_model, &search, tested),
     );
-    let found = of_tables.map(|found| noted(&mut failed, "p-k iteration of the tables", found));
-    answers.extend(found.flatten());
+    let of_tables = of_tables.transpose();
+    answers.extend(noted(&mut failed, "p-k iteration of the tables", of_tables));
     let mut by_model = by_model?;
     if let FlutterSearch::Onset(onset) = &mut by_model.search {
-        let interval = noted(
-            &mut failed,
-            "interval of the onset",
-            study.onset_interval(onset),
-        );
+        let interval = study.onset_interval(onset).map(Some);
+        let interval = noted(&mut failed, "interval of the onset", interval);
         onset.interval = interval.unwrap_or(onset.interval.clone());
         let found = study.contradictions(onset);
         let found = noted(&mut failed, "onsets of single mean speeds", found);
-        onset.warnings.extend(found.into_iter().flatten());
+        onset.warnings.extend(found);
     }
-    let constraints = noted(
-        &mut failed,
-        "constraints",
-        study.moved_onset(&by_model.search),
-    );
-    let untested = noted(
-        &mut failed,
-        "parts without a test",
-        study.untested(&by_model.search),
-    );
+    let constraints = study.moved_onset(&by_model.search);
+    let constraints = noted(&mut failed, "constraints", constraints);
+    let untested = study.untested(&by_model.search);
+    let untested = noted(&mut failed, "parts without a test", untested);
     let with_all = study.with_all_modes(&by_model.search);
     let modes_left_out = noted(&mut failed, "modes left out", with_all);
     let section = coupled(&study.by_model)?;
@@ -207,9 +201,13 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let of_tables = table_divergence(study);
     let table_divergence = noted(&mut failed, "divergence of the tables", of_tables);
     let growth = unwanted_growth_below(Some(&by_model.search), &section, &search, tested);
-    let growth = noted(&mut failed, "scan for growth", growth);
-    let galloping = galloping(study, &search);
-    let galloping = noted(&mut failed, "galloping by static coefficients", galloping);
+    let growth = noted(&mut failed, "scan for growth", growth.map(Some));
+    let galloping_m_s = galloping(study, &search);
+    let galloping_m_s = noted(
+        &mut failed,
+        "galloping by static coefficients",
+        galloping_m_s,
+    );
     // where the answer is: by the tables first, which are the headline
     let of = |a: &BridgeAnswer| a.search.critical_speed_m_s();
     let critical = answers.iter().find_map(of).or(of(&by_model));
@@ -222,15 +220,15 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     Ok(BridgeFlutter {
         answers,
         curves,
-        left_out: left_out.unwrap_or_default(),
+        left_out,
         divergence_m_s,
-        table_divergence: table_divergence.flatten(),
-        galloping_m_s: galloping.flatten(),
+        table_divergence,
+        galloping_m_s,
         growth,
         mean_rotation,
-        constraints: constraints.flatten(),
-        untested: untested.flatten(),
-        modes_left_out: modes_left_out.flatten(),
+        constraints,
+        untested,
+        modes_left_out,
         failed,
     })
 }
