@@ -2,6 +2,7 @@
 
 mod text;
 
+use super::stages::{MODELS, Stages};
 use super::vocabulary::{
     Answer, Error, FlutterSearch, OutputDir, Progress, Recommendation, Result, Study, StudyArgs,
     Written, ensure, list,
@@ -165,8 +166,30 @@ fn judge(
     Ok((grid, selection))
 }
 
-/// The study with the recommended model in front, as `select = true` asks for, and what speaks for it; that key is done with.
-pub(crate) fn with_selected(
+impl Stages<'_> {
+    /// Puts the recommended model in front of the study, where `select = true` asks for one, and says what speaks for it; that key is
+    /// done with.
+    pub(super) fn select(&mut self, records: Option<&RecordSet>) -> Result<Option<Recommendation>> {
+        let Some(records) = records.filter(|_| self.study.select) else {
+            return Ok(None);
+        };
+        let selected = selected(&self.study, &self.deck, records, self.progress);
+        match self.attempt("selection", selected)? {
+            Some((study, recommended)) => {
+                self.study = study;
+                Ok(recommended)
+            }
+            // that of an earlier run is not of these records
+            None => {
+                let file = format!("{}.json", selected_block().slug());
+                self.out.outdated(Path::new(MODELS).join(file));
+                Ok(None)
+            }
+        }
+    }
+}
+
+fn selected(
     study: &Study,
     deck: &Deck,
     records: &RecordSet,
@@ -185,11 +208,6 @@ pub(crate) fn with_saved(study: Study) -> Study {
         true => in_front(&study, selected_block()),
         false => study,
     }
-}
-
-/// Where `train` leaves it, in the folder of results.
-pub(crate) fn saved_model() -> PathBuf {
-    Path::new(super::stages::MODELS).join(format!("{}.json", selected_block().slug()))
 }
 
 fn selected_block() -> ModelBlock {

@@ -1,11 +1,12 @@
 //! `aerodeck thesis`: the headline of the source document, repeated, with a page of its figures and tables that can be computed, its
 //! numbers beside ours.
 
+use super::stages::Stages;
 use super::vocabulary::{
     Answer, Dof, Error, Figure, FlutterStudy, OutputDir, PageSection, Progress, Result,
     SectionsPage, Study, Temporary, list, rendered,
 };
-use super::{headline, result_files, stages, text};
+use super::{headline, result_files, text};
 use crate::aerodynamics::laguerre::discrete_memory;
 use crate::cli::compare::thesis_comparisons;
 use crate::cli::laboratory::drawn;
@@ -15,7 +16,7 @@ use crate::identification::{Grid, GridAxis, TimeWeights};
 use crate::reference::{OF_THE_DECKS, first_order_example, laguerre_functions};
 use crate::report::{first_order_figures, laguerre_figures};
 use crate::selection::metric_grid;
-use crate::study::{Deck, RecordSet, thesis_study_text};
+use crate::study::{RecordSet, thesis_study_text};
 use crate::wind_tunnel::RecordSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -28,13 +29,16 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
     let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let aside = Temporary::new(aside.keep());
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;
-    let deck = Deck::load(&study)?;
-    let mut out = OutputDir::new(aside.path())?;
-    let records = RecordSet::in_memory(stages::tunnel(&study, &deck, &mut out, progress)?);
-    let mut failed = Vec::new();
-    let all = Some(&records);
-    let trained = stages::train(&study, &deck, all, &mut out, &mut failed, progress)?;
-    let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
+    let mut stages = Stages::new(study, OutputDir::new(aside.path())?, progress)?;
+    let records = RecordSet::in_memory(stages.tunnel()?);
+    let trained = stages.train(Some(&records))?;
+    let results = stages.flutter_of(&trained)?;
+    let Stages {
+        study,
+        mut out,
+        failed,
+        ..
+    } = stages;
     let mut text = format!("{}\n\n", study.name);
     for t in &trained {
         text.push_str(&text::fit(&t.model.name, &t.report, &t.uncertainty));
