@@ -241,11 +241,7 @@ fn recommended(choice: &Choice, study: &Study, selection: &Selection) -> Result<
     } else {
         let fit = records_fit(study);
         block.records = Some(TimeFit {
-            form: Form::Laguerre {
-                filters: Some(found.filters),
-                feed_through: fit.form.feed_through(),
-                pole_per_transfer_function: false,
-            },
+            form: Form::laguerre(found.filters, fit.form.feed_through()),
             poles: PoleSearch::fixed(&[found.value]),
             own: Vec::new(),
             ..fit

@@ -162,10 +162,10 @@ impl BridgeStudy {
 
     /// Where an onset is searched.
     pub fn search(&self) -> OnsetSearch {
-        OnsetSearch {
-            speed_max_m_s: reaching(self.file.flutter.speed_max_m_s, self.required()),
-            speeds: self.file.flutter.speeds.max(SEARCHED_AT_LEAST),
-        }
+        OnsetSearch::new(
+            reaching(self.file.flutter.speed_max_m_s, self.required()),
+            self.file.flutter.speeds.max(SEARCHED_AT_LEAST),
+        )
     }
 
     /// Reduced frequencies, of the bridge, in which the forces of every section were tested.
