@@ -9,7 +9,6 @@ mod forces;
 mod interval;
 mod motion;
 mod parts;
-mod scaled_forces;
 mod scatter;
 mod similarity;
 
