@@ -38,10 +38,7 @@ pub struct OnsetSearch {
 
 impl Default for OnsetSearch {
     fn default() -> Self {
-        Self {
-            speed_max_m_s: 100.0,
-            speeds: 200,
-        }
+        Self::new(100.0, 200)
     }
 }
 
