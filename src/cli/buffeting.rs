@@ -129,9 +129,7 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
         results.aerodynamics,
         table.text()
     );
-    for line in results.without_response() {
-        let _ = writeln!(text, "{line}");
-    }
+    text.extend(results.without_response().into_iter().map(|line| format!("{line}\n")));
     text.push_str(&tested(results));
     text.push_str(&time_domain(results));
     text

@@ -94,9 +94,7 @@ fn text(reading: &CampaignReading) -> String {
         0 => text.push_str("nothing odd found\n"),
         n => {
             let _ = writeln!(text, "{}:", counted(n, "finding"));
-            for finding in &reading.findings {
-                let _ = writeln!(text, "  {finding}");
-            }
+            text.extend(reading.findings.iter().map(|finding| format!("  {finding}\n")));
         }
     }
     text

@@ -202,9 +202,7 @@ fn refuse_own_input(args: &TableArgs, result: &Path) -> Result<()> {
 fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Vec<String> {
     let found = sentences(&of_table(table, from));
     let warnings = [table.header.notes.clone(), found].concat();
-    for warning in &warnings {
-        let _ = writeln!(text, "  warning: {warning}");
-    }
+    text.extend(warnings.iter().map(|warning| format!("  warning: {warning}\n")));
     warnings
 }
 
@@ -283,13 +281,9 @@ fn notations(sketch: Option<&Path>) -> Result<Answer> {
         );
     }
     text.push_str("argument\n");
-    for argument in Argument::ALL {
-        let _ = writeln!(text, "  {argument:<10} {}", argument.definition());
-    }
+    text.extend(Argument::ALL.map(|a| format!("  {a:<10} {}\n", a.definition())));
     text.push_str("axes\n");
-    for axes in Axes::ALL {
-        let _ = writeln!(text, "  {axes:<10} {}", axes.words());
-    }
+    text.extend(Axes::ALL.map(|axes| format!("  {axes:<10} {}\n", axes.words())));
     let notations = Notation::NAMED.map(|n| {
         serde_json::json!({
             "notation": n,

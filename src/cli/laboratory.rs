@@ -141,9 +141,7 @@ pub(super) fn processing_text(
         .map(|e| format!(" ± {:.3}", 1e3 * e));
     let (lag_ms, error) = (1e3 * report.lag_s, error.unwrap_or_default());
     let _ = writeln!(text, "  lag of the force channels {lag_ms:.3}{error} ms");
-    for run in &report.runs {
-        let _ = writeln!(text, "  {}", line(run));
-    }
+    text.extend(report.runs.iter().map(|run| format!("  {}\n", line(run))));
     if let Some(found) = derivatives {
         let estimates = found.estimates.iter().filter(|e| e.value != 0.0);
         let relative = estimates.map(|e| (e.standard_error / e.value).abs());

@@ -38,9 +38,7 @@ pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
         write_run(&study, run, &mut out)?;
     }
     let mut text = in_words(&study, &results);
-    if let Some(run) = &run {
-        text.push_str(&run_in_words(run));
-    }
+    text.extend(run.iter().map(run_in_words));
     text.push_str(&text::failures(&failed));
     let value = serde_json::json!({ "quasi_steady": results, "simulation": run, "failed": failed });
     let answer = out.answer(text, value)?;
@@ -95,9 +93,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
     let _ = write!(text, "\nStatic equilibrium\n{}", equilibria(results));
-    if let Some(end) = &results.equilibria.end {
-        let _ = writeln!(text, "{}", end.explain());
-    }
+    text.extend(results.equilibria.end.iter().map(|end| format!("{}\n", end.explain())));
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
@@ -105,9 +101,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
                 onsets: vec![onset.as_ref().clone()],
                 ..FlutterStudy::default()
             }));
-            if let Some(mode) = &results.onset.mode {
-                let _ = writeln!(text, "kind: {}", mode.kind.name());
-            }
+            let mode = results.onset.mode.iter();
+            text.extend(mode.map(|mode| format!("kind: {}\n", mode.kind.name())));
         }
         other => {
             let _ = writeln!(text, "{}", other.explain());

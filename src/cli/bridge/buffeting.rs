@@ -69,9 +69,7 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
             table(results)
         );
     }
-    for why in &unstable {
-        let _ = writeln!(text, "no answer: {why}");
-    }
+    text.extend(unstable.iter().map(|why| format!("no answer: {why}\n")));
     if args.field {
         let field = study.first_field(&block, all[0].frequency.speed_m_s)?;
         out.write("turbulence.csv", field_csv(&field))?;

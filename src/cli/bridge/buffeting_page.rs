@@ -68,13 +68,9 @@ pub(super) fn forces(results: &BridgeBuffeting) -> String {
             text,
             "time domain: {records} of {seconds} s, every {step_s} s, seed {seed}; peaks in {peak_s} s"
         );
-        if let Some(why) = &time.too_short {
-            let _ = writeln!(text, "  {why}");
-        }
+        text.extend(time.too_short.iter().map(|why| format!("  {why}\n")));
     }
-    if let Some(why) = &results.no_time {
-        let _ = writeln!(text, "no time domain: {why}");
-    }
+    text.extend(results.no_time.iter().map(|why| format!("no time domain: {why}\n")));
     let parts = results.frequency.part_in_tested_range.iter().flatten();
     let least = parts.flatten().copied().reduce(f64::min);
     if let Some(percent) = least.map(|least| 100.0 * least) {

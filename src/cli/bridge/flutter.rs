@@ -78,13 +78,9 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     let mut text = text::text(&study, &results, &verdict, progress.verbose);
     let scatter = scattered.as_ref().map(scatter_line);
-    if let Some(line) = &scatter {
-        let _ = writeln!(text, "{line}");
-    }
+    text.extend(scatter.iter().map(|line| format!("{line}\n")));
     let inputs = leave_inputs(&args.bridge.bridge, &study.file, &mut out)?;
-    for failed in &failed {
-        let _ = writeln!(text, "failed: {failed}");
-    }
+    text.extend(failed.iter().map(|failed| format!("failed: {failed}\n")));
     if is_of_a_study(&out.target(SUMMARY)) {
         text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {

@@ -45,9 +45,7 @@ pub(super) fn text(
         let named = named.join(", ");
         let _ = writeln!(text, "Modes     of the flutter, by kinetic energy: {named}");
     }
-    for sentence in beside_the_onset(results) {
-        let _ = writeln!(text, "{sentence}");
-    }
+    text.extend(beside_the_onset(results).into_iter().map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -63,9 +61,7 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
         counted(bridge.groups.len(), "group"),
         bridge.width_m()
     );
-    for answer in &results.answers {
-        text.push_str(&one(answer));
-    }
+    text.extend(results.answers.iter().map(one));
     if !results.left_out.is_empty() {
         text.push_str("Onset with fewer modes (by share of the kinetic energy at the onset)\n");
     }
@@ -81,9 +77,7 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
             "  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}"
         );
     }
-    for sentence in beside_the_onset(results) {
-        let _ = writeln!(text, "{sentence}");
-    }
+    text.extend(beside_the_onset(results).into_iter().map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -161,9 +155,7 @@ fn one(answer: &BridgeAnswer) -> String {
             if let Some(slope) = o.damping_slope_s_m {
                 let _ = writeln!(text, "  damping slope dζ/dV {slope:.5} s/m");
             }
-            for warning in &o.warnings {
-                let _ = writeln!(text, "  warning: {warning}");
-            }
+            text.extend(o.warnings.iter().map(|warning| format!("  warning: {warning}\n")));
         }
         other => {
             let _ = writeln!(text, "  {}", other.explain());

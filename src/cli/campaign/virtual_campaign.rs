@@ -78,9 +78,7 @@ pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Ans
             run.in_wind.sampling_hz
         );
     }
-    for finding in plan.tunnel.findings() {
-        let _ = writeln!(text, "  note: {finding}");
-    }
+    text.extend(plan.tunnel.findings().into_iter().map(|finding| format!("  note: {finding}\n")));
     let value = serde_json::json!({
         "section": made.raw.section,
         "runs": made.disturbances,
