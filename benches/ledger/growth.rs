@@ -280,7 +280,7 @@ pub(crate) fn run(names: &[&str], write: bool) -> Result<(), String> {
         return Ok(());
     }
     let title = "How cost grows: exponent as fitted (by theory)";
-    let figure = growth_figure(title, &panels, "seconds", 3).map_err(|e| e.to_string())?;
+    let figure = growth_figure(title, &panels, "seconds").map_err(|e| e.to_string())?;
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     figure.write(docs, "growth").map_err(|e| e.to_string())?;
     performance::write("growth", &performance::head(), &text)

@@ -28,8 +28,8 @@ pub(super) fn plain(text: &str) -> String {
 pub struct Answer {
     text: String,
     json: serde_json::Value,
-    passed: bool,
-    refused: bool,
+    /// Exit code of the process.
+    exit: u8,
     verbatim: bool,
 }
 
@@ -43,8 +43,7 @@ impl Answer {
         Ok(Self {
             text,
             json,
-            passed: true,
-            refused: false,
+            exit: 0,
             verbatim: false,
         })
     }
@@ -61,14 +60,19 @@ impl Answer {
     /// The same answer of a check that did or did not pass.
     #[must_use]
     pub(crate) fn passed_if(mut self, passed: bool) -> Self {
-        self.passed = passed;
+        if !passed && self.exit == 0 {
+            self.exit = FAILED;
+        }
         self
     }
 
-    /// The same answer to a question that states a required speed, if it does.
+    /// The same answer to a question that states a required speed, if it does; that this is not known to be met comes before a check
+    /// that did not pass.
     #[must_use]
     pub(crate) fn with_outcome_of<'a>(mut self, verdict: impl Into<Option<&'a Verdict>>) -> Self {
-        self.refused = verdict.into().is_some_and(Verdict::refuses);
+        if verdict.into().is_some_and(Verdict::refuses) {
+            self.exit = NOT_MET;
+        }
         self
     }
 
@@ -97,13 +101,9 @@ impl Answer {
         format!("{:#}", self.json)
     }
 
-    /// That of the process: whether a speed is required and not known to be met comes before whether every check passed.
+    /// That of the process.
     pub(super) fn exit_code(&self) -> u8 {
-        match (self.refused, self.passed) {
-            (true, _) => NOT_MET,
-            (false, true) => 0,
-            (false, false) => FAILED,
-        }
+        self.exit
     }
 }
 

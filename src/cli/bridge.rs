@@ -12,8 +12,7 @@ mod text;
 
 pub(crate) use files::read;
 
-use super::vocabulary::{Answer, Progress};
-use crate::error::Result;
+use super::vocabulary::{Answer, Progress, Result};
 
 /// Flutter of whole bridges, their modes, and modes of finite-element programs
 #[derive(clap::Subcommand)]

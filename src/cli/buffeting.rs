@@ -1,17 +1,16 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed, and the page of it.
 
 use super::report::folder::today;
-use super::vocabulary::{Answer, OutputDir, Progress, TextTable};
+use super::vocabulary::{
+    Answer, Error, Figure, OutputDir, PageSection, Progress, Result, SectionsPage, Study,
+    TextTable, Verdict, WindStudy, counted, rendered,
+};
 use super::wind::WindArgs;
 use super::{figures, headline};
 use crate::buffeting::peak_factor;
-use crate::error::{Error, Result, counted};
 use crate::files::report_block::ReportBlock;
-use crate::report::{
-    Figure, PageSection, SectionsPage, buffeting_rms_figure, buffeting_spectra_figure, rendered,
-};
-use crate::study::{BuffetingStudy, SectionBuffetingBlock, Study, WindStudy, buffeting_study};
-use crate::verdict::Verdict;
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
+use crate::study::{BuffetingStudy, SectionBuffetingBlock, buffeting_study};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -91,7 +90,7 @@ fn write(
     out.write_json("buffeting.json", "buffeting-results", results)?;
     let mut drawn = Vec::new();
     let mut draw = |stem: &str, caption: String, figure: Figure| {
-        drawn.push((caption, figure.svg().to_owned()));
+        drawn.push((caption, figure.clone()));
         figures::write(stem, out, || Ok(figure))
     };
     if !results.responses.is_empty() {
@@ -130,9 +129,7 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
         results.aerodynamics,
         table.text()
     );
-    for line in results.without_response() {
-        let _ = writeln!(text, "{line}");
-    }
+    text.extend(results.without_response().into_iter().map(|line| format!("{line}\n")));
     text.push_str(&tested(results));
     text.push_str(&time_domain(results));
     text
@@ -144,7 +141,7 @@ fn page(
     key: &str,
     results: &BuffetingStudy,
     verdict: Option<&Verdict>,
-    figures: Vec<(String, String)>,
+    figures: Vec<(String, Figure)>,
 ) -> Result<SectionsPage> {
     let mut rows = Vec::new();
     for r in results.shown() {

@@ -2,10 +2,8 @@
 
 mod virtual_campaign;
 
-use super::vocabulary::{Answer, Progress};
+use super::vocabulary::{Answer, Dof, Progress, Result, counted};
 use crate::cli::text::to_tenths_of_mm;
-use crate::error::{Result, counted};
-use crate::section::Dof;
 use crate::wind_tunnel::RawRecording;
 use crate::wind_tunnel::campaign::{Campaign, CampaignReading};
 use serde_json::json;
@@ -96,9 +94,7 @@ fn text(reading: &CampaignReading) -> String {
         0 => text.push_str("nothing odd found\n"),
         n => {
             let _ = writeln!(text, "{}:", counted(n, "finding"));
-            for finding in &reading.findings {
-                let _ = writeln!(text, "  {finding}");
-            }
+            text.extend(reading.findings.iter().map(|finding| format!("  {finding}\n")));
         }
     }
     text

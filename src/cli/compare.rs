@@ -5,10 +5,8 @@ mod decks;
 mod models;
 mod signals;
 
-use super::vocabulary::{Answer, Progress};
+use super::vocabulary::{Answer, PageSection, Progress, Result};
 use crate::comparison::forces::THESIS_DECKS;
-use crate::error::Result;
-use crate::report::PageSection;
 use common::Common;
 
 /// Predicted against measured forces: one model on several decks, several models on one, or two signals of a file

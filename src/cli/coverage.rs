@@ -1,7 +1,6 @@
 //! `aerodeck coverage`: are the intervals reliable?
 
-use super::vocabulary::{Answer, Progress, TextTable, spelt};
-use crate::error::Result;
+use super::vocabulary::{Answer, Progress, Result, TextTable, spelt};
 use crate::uncertainty::{
     CoveragePlan, CoverageReport, FamilyPlan, FamilyReport, RangeCount, Truth, coverage,
     family_coverage,
@@ -127,15 +126,11 @@ fn family_row(r: &RangeCount) -> [String; 11] {
 fn text(r: &CoverageReport) -> String {
     let mut text = plan(&r.plan);
     let rows = speeds(r).into_iter().chain(shares(r));
-    for (what, value) in rows {
-        let _ = writeln!(text, "{what:<42} {value}");
-    }
+    text.extend(rows.map(|(what, value)| format!("{what:<42} {value}\n")));
     if r.without_onset > 0 {
         let _ = writeln!(text, "repetitions without an onset: {}", r.without_onset);
     }
-    for warning in &r.warnings {
-        let _ = writeln!(text, "warning: {warning}");
-    }
+    text.extend(r.warnings.iter().map(|warning| format!("warning: {warning}\n")));
     text
 }
 

@@ -1,9 +1,8 @@
 //! `aerodeck demo`: the whole chain on an embedded measured deck.
 
 use super::study::run_chain;
-use super::vocabulary::{Answer, OutputDir, Progress};
-use crate::error::Result;
-use crate::study::{Study, demo_study_text};
+use super::vocabulary::{Answer, OutputDir, Progress, Result, Study};
+use crate::study::demo_study_text;
 use std::path::Path;
 
 const STUDY_FILE: &str = "study.toml";

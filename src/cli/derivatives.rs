@@ -1,17 +1,16 @@
 //! `aerodeck derivatives`: tables of derivatives, shown and converted between notations.
 
 use super::figures;
-use super::vocabulary::{Answer, OutputDir, folder_of};
+use super::vocabulary::{Answer, Error, OutputDir, Result, ensure, folder_of, sentences};
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedDerivative, ExpressedPoint, ExpressedTable, Notation,
 };
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
-use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::{
     ReadOptions, StatedConvention, embedded, file_and_sheet, is_table_file, named_sheet,
     read_table_with, template_bytes, workbook_bytes_in, write_csv_in,
 };
-use crate::plausibility::{of_table, sentences};
+use crate::plausibility::of_table;
 use crate::report::axes_sketch;
 use crate::signal::extremes;
 use clap::Subcommand;
@@ -202,9 +201,7 @@ fn refuse_own_input(args: &TableArgs, result: &Path) -> Result<()> {
 fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Vec<String> {
     let found = sentences(&of_table(table, from));
     let warnings = [table.header.notes.clone(), found].concat();
-    for warning in &warnings {
-        let _ = writeln!(text, "  warning: {warning}");
-    }
+    text.extend(warnings.iter().map(|warning| format!("  warning: {warning}\n")));
     warnings
 }
 
@@ -283,13 +280,9 @@ fn notations(sketch: Option<&Path>) -> Result<Answer> {
         );
     }
     text.push_str("argument\n");
-    for argument in Argument::ALL {
-        let _ = writeln!(text, "  {argument:<10} {}", argument.definition());
-    }
+    text.extend(Argument::ALL.map(|a| format!("  {a:<10} {}\n", a.definition())));
     text.push_str("axes\n");
-    for axes in Axes::ALL {
-        let _ = writeln!(text, "  {axes:<10} {}", axes.words());
-    }
+    text.extend(Axes::ALL.map(|axes| format!("  {axes:<10} {}\n", axes.words())));
     let notations = Notation::NAMED.map(|n| {
         serde_json::json!({
             "notation": n,

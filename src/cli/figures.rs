@@ -1,8 +1,6 @@
 //! Figures of results: an SVG each, a PNG beside it with `--png`, nothing with `--no-figures`.
 
-use super::vocabulary::OutputDir;
-use crate::error::{Result, ensure};
-use crate::report::Figure;
+use super::vocabulary::{Figure, OutputDir, Result, ensure};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Said at the start of a command.

@@ -1,15 +1,15 @@
 //! `aerodeck flutter`: curves and onsets of the trained models of a study.
 
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
-use super::{headline, result_files, routes, select, stages, text};
-use crate::error::Result;
-use crate::flutter::OnsetMethod;
-use crate::study::{
-    Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, attempt, route_table,
-    saved_moved_onset, saved_uncertainty, section_evidence, state_route_intervals,
+use super::vocabulary::{
+    Answer, FlutterStudy, OnsetMethod, OutputDir, Progress, Result, Study, StudyArgs, TrainedModel,
+    Verdict, attempt,
 };
-use crate::trained_model::TrainedModel;
-use crate::verdict::{Evidence, Verdict};
+use super::{headline, result_files, routes, select, stages, text};
+use crate::study::{
+    Deck, KnownUncertainty, StageFailure, route_table, saved_moved_onset, saved_uncertainty,
+    section_evidence, state_route_intervals,
+};
+use crate::verdict::Evidence;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -72,15 +72,14 @@ fn verdict(
     failed: &[StageFailure],
 ) -> Result<Verdict> {
     let name = &study.exported()?.name;
-    let place = models.iter().position(|m| m.name == *name);
-    let own = place.map(|i| &models[i]);
+    let mut all = models.iter().zip(known);
+    let (own, known) = all.find(|(m, _)| m.name == *name).unzip();
     let with = own.and_then(|m| results.search_of(&m.name, OnsetMethod::Eigenvalues));
     let moved = own.zip(with).map_or(Ok(None), |(model, with)| {
         let (section, search) = (&study.section, study.speeds().search());
         saved_moved_onset(model, &[folder.to_owned()], section, &search, &with)
     })?;
     let failed = [failed, &results.failed].concat();
-    let known = place.and_then(|i| known.get(i));
     Ok(Verdict::judge(&Evidence {
         constraints: moved,
         ..section_evidence(study, deck, results, own, known, &failed)

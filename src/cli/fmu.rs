@@ -3,8 +3,7 @@
 mod export;
 mod replay;
 
-use super::vocabulary::{Answer, Progress};
-use crate::error::Result;
+use super::vocabulary::{Answer, Progress, Result};
 use crate::fmu::importer::{CheckReport, Fmu};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

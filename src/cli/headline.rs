@@ -1,11 +1,10 @@
 //! What stands around the verdict of a study: the onset it is about, and how the other models compare.
 
-use super::vocabulary::speed_or;
-use crate::error::counted;
-use crate::flutter::{Onset, OnsetMethod};
+use super::vocabulary::{FlutterStudy, OnsetMethod, Verdict, counted, speed_or};
+use crate::flutter::Onset;
 use crate::signal::extremes;
-use crate::study::{FlutterStudy, SteppedOnset};
-use crate::verdict::{Doubt, Severity, Verdict};
+use crate::study::SteppedOnset;
+use crate::verdict::{Doubt, Severity};
 use std::fmt::Write as _;
 
 /// The onset of the model `name` by eigenvalues, if the data determine it.

@@ -1,13 +1,9 @@
 //! The laboratory's report of `process`, printed and as a page: what was found odd, every run, the derivatives with their errors, the
 //! stages of each run.
 
-use super::vocabulary::OutputDir;
+use super::vocabulary::{Dof, Figure, OutputDir, PageSection, SectionsPage, counted, file_name};
 use crate::aerodynamics::derivatives::Derivative;
-use crate::error::counted;
-use crate::files::text::file_name;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
-use crate::report::{PageSection, SectionsPage};
-use crate::section::Dof;
 use crate::signal::median;
 use crate::wind_tunnel::RawCampaign;
 use crate::wind_tunnel::processing::{ProcessingReport, RunReport};
@@ -23,15 +19,14 @@ pub(super) fn laboratory_page(
 ) -> SectionsPage {
     let estimates = found.map_or(&[][..], |f| &f.estimates);
     let caption = "Points: test points of each mean speed, with 95 % intervals. Lines: theory.";
-    let derivatives = svg(out, "derivatives").map(|svg| (caption.to_owned(), svg));
+    let derivatives = drawn(out, "derivatives").map(|figure| (caption.to_owned(), figure));
     let stages = report.runs.iter().filter_map(|run| {
-        let drawn = svg(out, &format!("processing/{}", file_name(&run.run)))?;
-        Some((run.run.clone(), drawn))
+        let figure = drawn(out, &format!("processing/{}", file_name(&run.run)))?;
+        Some((run.run.clone(), figure))
     });
-    let section = |title: &str| PageSection {
-        title: title.to_owned(),
-        ..PageSection::default()
-    };
+    let section = |title| PageSection::table(title, "", Vec::new());
+    let lag = format!("Lag of the force channels {:.3} ms.", 1e3 * report.lag_s);
+    let runs = report.runs.iter().map(run_row);
     SectionsPage {
         title: format!("{}: processing of a campaign", raw.section),
         subtitle: format!(
@@ -51,13 +46,8 @@ pub(super) fn laboratory_page(
                 ..section("Remarks")
             },
             PageSection {
-                text: vec![format!(
-                    "Lag of the force channels {:.3} ms.",
-                    1e3 * report.lag_s
-                )],
-                header: "run | what was found",
-                rows: report.runs.iter().map(run_row).collect(),
-                ..section("Runs")
+                text: vec![lag],
+                ..PageSection::table("Runs", "run | what was found", runs.collect())
             },
             PageSection {
                 text: vec![
@@ -70,11 +60,11 @@ pub(super) fn laboratory_page(
                 figures: stages.collect(),
                 ..section("Stages of the runs")
             },
-            PageSection {
-                header: "derivative | V m/s | f Hz | V̂ | value | standard error",
-                rows: estimates.iter().map(estimate_row).collect(),
-                ..section("Every derivative at every test point")
-            },
+            PageSection::table(
+                "Every derivative at every test point",
+                "derivative | V m/s | f Hz | V̂ | value | standard error",
+                estimates.iter().map(estimate_row).collect(),
+            ),
         ],
         ..SectionsPage::default()
     }
@@ -97,11 +87,10 @@ fn estimate_row(e: &DerivativeEstimate) -> Vec<String> {
     ]
 }
 
-/// A figure that was drawn, without what only a file of its own needs.
-pub(super) fn svg(out: &OutputDir, stem: &str) -> Option<String> {
-    let text = std::fs::read_to_string(out.staging().join(format!("{stem}.svg"))).ok()?;
-    let start = text.find("<svg")?;
-    Some(text[start..].to_owned())
+/// A figure that was drawn.
+pub(super) fn drawn(out: &OutputDir, stem: &str) -> Option<Figure> {
+    let text = std::fs::read_to_string(out.staging().join(format!("{stem}.svg")));
+    Figure::of_file(&text.ok()?)
 }
 
 /// A run in one line.
@@ -152,9 +141,7 @@ pub(super) fn processing_text(
         .map(|e| format!(" ± {:.3}", 1e3 * e));
     let (lag_ms, error) = (1e3 * report.lag_s, error.unwrap_or_default());
     let _ = writeln!(text, "  lag of the force channels {lag_ms:.3}{error} ms");
-    for run in &report.runs {
-        let _ = writeln!(text, "  {}", line(run));
-    }
+    text.extend(report.runs.iter().map(|run| format!("  {}\n", line(run))));
     if let Some(found) = derivatives {
         let estimates = found.estimates.iter().filter(|e| e.value != 0.0);
         let relative = estimates.map(|e| (e.standard_error / e.value).abs());

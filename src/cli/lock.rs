@@ -1,7 +1,7 @@
 //! One run at a time in a folder of results.
 
 use super::interrupt::{Temporary, uninterrupted};
-use crate::error::{Error, Result};
+use super::vocabulary::{Error, Result};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read as _, Write as _};
 use std::path::Path;

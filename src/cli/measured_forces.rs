@@ -1,13 +1,11 @@
 //! Forces of records beside those that the exported model predicts for the measured motion.
 
 use super::figures;
-use super::vocabulary::OutputDir;
-use crate::error::Result;
+use super::vocabulary::{
+    Dof, OutputDir, PlottedSeries, Result, TimePanel, TrainedModel, time_history_figure,
+};
 use crate::flutter::CriticalPoint;
-use crate::report::{PlottedSeries, TimePanel, time_history_figure};
-use crate::section::Dof;
 use crate::study::RecordSet;
-use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordHeader, predicted_forces};
 use std::f64::consts::TAU;
@@ -118,14 +116,12 @@ impl RecordExcerpt {
                 let points = (first..last).map(|n| (at(n), value(n)));
                 PlottedSeries::new(label, points.collect())
             };
-            TimePanel {
-                y_label: self.label(h, i),
-                series: vec![
-                    points(origin, &|n| measured[n]),
-                    points("model", &|n| model[n]),
-                    points(&format!("{origin} less model"), &|n| measured[n] - model[n]),
-                ],
-            }
+            let series = [
+                points(origin, &|n| measured[n]),
+                points("model", &|n| model[n]),
+                points(&format!("{origin} less model"), &|n| measured[n] - model[n]),
+            ];
+            TimePanel::new(self.label(h, i), series)
         };
         Ok((0..h.dofs.len()).map(panel).collect())
     }

@@ -1,17 +1,16 @@
 //! `aerodeck monte-carlo`: the distribution of the onset when section and forces are random.
 
-use super::vocabulary::{Answer, OutputDir, Progress, folder_of};
+use super::vocabulary::{
+    Answer, Finding, OutputDir, Progress, Result, TrainedModel, Verdict, counted, ensure,
+    folder_of, read_text,
+};
 use super::{figures, stages};
-use crate::error::{Result, counted, ensure};
-use crate::files::text::read_text;
-use crate::plausibility::Finding;
 use crate::report::onset_distribution_figure;
 use crate::study::{FlutterBlock, saved_evidence};
-use crate::trained_model::TrainedModel;
 use crate::uncertainty::monte_carlo::{
     MAX_SAMPLES, MonteCarloPlan, MonteCarloResult, Quantile, monte_carlo,
 };
-use crate::verdict::{RequiredSpeed, Verdict};
+use crate::verdict::RequiredSpeed;
 use std::path::{Path, PathBuf};
 
 /// Distribution of the flutter onset when section and forces are random, and its probability below a design speed

@@ -1,12 +1,11 @@
 //! `aerodeck new`: a commented study to begin with.
 
-use super::vocabulary::{Answer, OutputDir, Written, folder_of, list};
+use super::vocabulary::{Answer, Error, OutputDir, Result, Study, Written, folder_of, list};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation};
-use crate::error::{Error, Result};
 use crate::files::derivatives::{StatedConvention, is_table_file, named_sheet};
 use crate::section::{Rotation, STANDARD_AIR_DENSITY_KG_M3, SectionModel, Translation};
 use crate::study::bridge::new_bridge_text;
-use crate::study::{Deck, Study, example_wind_study_text, new_study_text};
+use crate::study::{Deck, example_wind_study_text, new_study_text};
 use clap::ArgGroup;
 use std::ffi::OsStr;
 use std::io::{BufRead, Write, stderr, stdin};

@@ -1,9 +1,9 @@
 //! `aerodeck plot`: columns of a CSV file of results over one of them.
 
 use super::figures;
-use super::vocabulary::{Answer, OutputDir, folder_of};
-use crate::error::{Error, Result};
-use crate::report::{PlottedSeries, TimePanel, time_history_figure};
+use super::vocabulary::{
+    Answer, Error, OutputDir, PlottedSeries, Result, TimePanel, folder_of, time_history_figure,
+};
 use std::path::Path;
 
 /// Panels of one figure at most.
@@ -57,10 +57,7 @@ pub(crate) fn run(
         }
         named => named.iter().map(|n| column(n)).collect::<Result<_>>()?,
     };
-    let panel = |c: usize| TimePanel {
-        y_label: label(&names[c]),
-        series: curves(&names, &rows, x, c),
-    };
+    let panel = |c: usize| TimePanel::new(label(&names[c]), curves(&names, &rows, x, c));
     let panels: Vec<TimePanel> = y.into_iter().map(panel).collect();
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let folder = out.unwrap_or(folder_of(file));

@@ -4,24 +4,24 @@ use super::figures;
 use super::laboratory::{laboratory_page, processing_text};
 use super::result_files::{lines_of, over_v_hat};
 use super::stages::RECORDS;
-use super::vocabulary::{Answer, OutputDir, Progress};
+use super::vocabulary::{
+    Answer, DerivativePlot, Dof, Error, Figure, Finding, OutputDir, PlottedSeries, Progress,
+    Result, Study, derivative_lines, ensure, file_name, rendered, sentences,
+};
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{Derivative, TableHeader};
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
 use crate::aerodynamics::{FlatPlate, Transfer};
-use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
-use crate::files::text::file_name;
 use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
 use crate::json;
-use crate::plausibility::{Finding, FindingKind, FindingSeverity, of_table, sentences};
-use crate::report::{DerivativePlot, Figure, PlottedSeries, processing_figure, rendered};
-use crate::section::Dof;
-use crate::study::{Study, derivative_lines, processed_study_text, read_section};
+use crate::plausibility::{FindingKind, FindingSeverity, of_table};
+use crate::report::processing_figure;
+use crate::study::{processed_study_text, read_section};
 use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, ProcessingReport, process};
@@ -344,18 +344,14 @@ fn measured(
     groups: &[Vec<f64>],
     d: Derivative,
 ) -> Vec<PlottedSeries> {
-    let mut series: Vec<PlottedSeries> = Vec::new();
-    let mut last = None;
-    for e in found.each(d) {
-        let group = group_of(groups, e.mean_speed_m_s);
-        if last.replace(group) != Some(group) {
-            series.push(PlottedSeries::new(speeds_label(&groups[group]), Vec::new()));
-        }
-        if let Some(series) = series.last_mut() {
-            series.points.push((e.v_hat, e.value));
-        }
-    }
-    series
+    let all: Vec<&DerivativeEstimate> = found.each(d).collect();
+    let group = |e: &DerivativeEstimate| group_of(groups, e.mean_speed_m_s);
+    let of_group = |all: &[&DerivativeEstimate]| {
+        let points = all.iter().map(|e| (e.v_hat, e.value));
+        PlottedSeries::new(speeds_label(&groups[group(all[0])]), points.collect())
+    };
+    let by_speed = all.chunk_by(|a, b| group(a) == group(b));
+    by_speed.map(of_group).collect()
 }
 
 /// A 95 % interval from many samples.

@@ -1,22 +1,17 @@
 //! `aerodeck quasi-steady`: equilibrium, linear model, onset and a nonlinear run from static coefficients.
 
-use super::vocabulary::{Answer, OutputDir, Progress, TextTable, motion_columns};
+use super::vocabulary::{
+    Answer, DerivativePlot, Dof, Error, Figure, FlutterSearch, FlutterStudy, OutputDir,
+    PlottedSeries, Progress, Result, TextTable, TimePanel, WindStudy, attempt, counted,
+    motion_columns, time_history_figure,
+};
 use super::wind::WindArgs;
 use super::{figures, headline, text};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
-use crate::error::{Error, Result, counted};
 use crate::files::gusts::write_gusts;
-use crate::flutter::FlutterSearch;
-use crate::report::{
-    DerivativePlot, Figure, PlottedSeries, TimePanel, derivatives_figure, equilibrium_figure,
-    time_history_figure, vf_vg_figure,
-};
-use crate::section::Dof;
-use crate::study::{
-    FlutterStudy, QuasiSteadyStudy, SimulatedMotion, WindStudy, attempt, quasi_steady_study,
-    simulated_motion,
-};
+use crate::report::{derivatives_figure, equilibrium_figure, vf_vg_figure};
+use crate::study::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
 use std::fmt::Write as _;
 
 /// Stem of the nonlinear run, and the gusts in it.
@@ -43,9 +38,7 @@ pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
         write_run(&study, run, &mut out)?;
     }
     let mut text = in_words(&study, &results);
-    if let Some(run) = &run {
-        text.push_str(&run_in_words(run));
-    }
+    text.extend(run.iter().map(run_in_words));
     text.push_str(&text::failures(&failed));
     let value = serde_json::json!({ "quasi_steady": results, "simulation": run, "failed": failed });
     let answer = out.answer(text, value)?;
@@ -100,9 +93,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
     let _ = write!(text, "\nStatic equilibrium\n{}", equilibria(results));
-    if let Some(end) = &results.equilibria.end {
-        let _ = writeln!(text, "{}", end.explain());
-    }
+    text.extend(results.equilibria.end.iter().map(|end| format!("{}\n", end.explain())));
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
@@ -110,9 +101,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
                 onsets: vec![onset.as_ref().clone()],
                 ..FlutterStudy::default()
             }));
-            if let Some(mode) = &results.onset.mode {
-                let _ = writeln!(text, "kind: {}", mode.kind.name());
-            }
+            let mode = results.onset.mode.iter();
+            text.extend(mode.map(|mode| format!("kind: {}\n", mode.kind.name())));
         }
         other => {
             let _ = writeln!(text, "{}", other.explain());
@@ -216,20 +206,17 @@ fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
     for (i, dof) in run.dofs.iter().enumerate() {
         let (factor, unit) = dof.shown_in();
         let of = |rows: &[Vec<f64>]| rows.iter().map(|r| factor * r[i]).collect::<Vec<_>>();
-        panels.push(TimePanel {
-            y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-            series: vec![
-                series("nonlinear", &mut of(&run.nonlinear).into_iter()),
-                series("linear", &mut of(&run.linear).into_iter()),
-            ],
-        });
+        let both = [
+            series("nonlinear", &mut of(&run.nonlinear).into_iter()),
+            series("linear", &mut of(&run.linear).into_iter()),
+        ];
+        let label = format!("{} {} ({unit})", dof.name(), dof.symbol());
+        panels.push(TimePanel::new(label, both));
     }
-    panels.push(TimePanel {
-        y_label: "gusts (m/s)".to_owned(),
-        series: vec![
-            series("gust u", &mut run.gusts_m_s.iter().map(|g| g.0)),
-            series("gust w", &mut run.gusts_m_s.iter().map(|g| g.1)),
-        ],
-    });
+    let gusts = [
+        series("gust u", &mut run.gusts_m_s.iter().map(|g| g.0)),
+        series("gust w", &mut run.gusts_m_s.iter().map(|g| g.1)),
+    ];
+    panels.push(TimePanel::new("gusts (m/s)", gusts));
     panels
 }

@@ -13,14 +13,12 @@ use super::measured_forces::FORCES;
 use super::result_files::{CURVES, DERIVATIVES, FIGURE, RESPONSE, ROOTS};
 use super::stages::{FMU_FILE, MODEL_FILE};
 use super::summary::Summary;
-use super::vocabulary::{Answer, OutputDir, list};
-use crate::error::{Error, Result};
-use crate::files::text::read_text;
+use super::vocabulary::{
+    Answer, Error, OutputDir, Recommendation, Result, Study, read_text, rendered,
+};
 use crate::fmu::importer::Fmu;
 use crate::fmu::package::with_report;
-use crate::report::{PageFigure, StudyPage, rendered, sections_of, summary_figure};
-use crate::selection::Recommendation;
-use crate::study::Study;
+use crate::report::{PageFigure, StudyPage, sections_of, summary_figure};
 use folder::{REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, curves_of, first_derivatives, known, of_svg, round, row, sentence_row, sliders};
 use std::collections::BTreeMap;
@@ -42,8 +40,7 @@ pub(super) fn run(folder: &Path, pdf: bool) -> Result<Answer> {
         printed::print(&at, &pdf)?;
     }
     out.write(REPORT, page)?;
-    let written = out.commit()?;
-    Answer::new(list(&written), &serde_json::json!({ "files": written }))
+    out.answer(String::new(), serde_json::json!({}))
 }
 
 /// Writes the page of the results that are staged, beside their archive and into it.
@@ -104,7 +101,7 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
         (page.speeds, page.curves) = curves_of(&curves, &summary.model)?;
     }
-    page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
+    page.summary = summary_figure(&page)?;
     page.live = sliders(&study, read(MODEL_FILE))?;
     let turbulent = read(buffeting::PAGE).filter(|_| summary.buffeting.is_some());
     let turbulent = turbulent.and_then(|bytes| String::from_utf8(bytes).ok());

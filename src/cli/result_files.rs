@@ -3,22 +3,17 @@
 
 use super::figures;
 use super::simulate::{motion_panels, simulated};
-use super::vocabulary::OutputDir;
+use super::vocabulary::{
+    DerivativePlot, Dof, Error, Figure, FlutterStudy, OutputDir, PlottedSeries, Result, Study,
+    TrainedModel, Verdict, csv_cell, derivative_lines,
+};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
-use crate::error::{Error, Result};
-use crate::files::text::csv_cell;
 use crate::flutter::{CriticalPoint, FlutterCurves, Onset};
-use crate::report::{
-    DerivativePlot, Figure, PlottedSeries, derivatives_figure, root_locus_figure,
-    scaled_history_figure, vf_vg_figure,
-};
-use crate::section::Dof;
-use crate::study::{Deck, FlutterStudy, Study, TrainedWithReport, derivative_lines};
-use crate::trained_model::TrainedModel;
+use crate::report::{derivatives_figure, root_locus_figure, scaled_history_figure, vf_vg_figure};
+use crate::study::{Deck, TrainedWithReport};
 use crate::uncertainty::DerivativeInterval;
 use crate::units::{SAME_SPEED, group_of, near_groups};
-use crate::verdict::Verdict;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 

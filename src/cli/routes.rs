@@ -1,9 +1,8 @@
 //! The table of all routes and the onset cards, in words.
 
 use super::text::interval;
-use super::vocabulary::{TextTable, speed_or};
-use crate::flutter::{FlutterSearch, ModeBranch, ModeRatio, Onset, OnsetInterval};
-use crate::section::Dof;
+use super::vocabulary::{Dof, FlutterSearch, TextTable, speed_or};
+use crate::flutter::{ModeBranch, ModeRatio, Onset, OnsetInterval};
 use crate::study::{Route, RouteTable};
 use crate::verdict::SanityLines;
 use std::fmt::Write as _;
@@ -22,16 +21,10 @@ pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
         columns.sentence(head, &format!("no answer: {}", failed.reason));
     }
     let mut text = columns.text();
-    if let Some(lines) = &table.sanity {
-        text.push_str(&sanity(lines));
-    }
-    for left_out in &table.left_out {
-        let _ = writeln!(text, "left out: {left_out}");
-    }
+    text.extend(table.sanity.iter().map(sanity));
+    text.extend(table.left_out.iter().map(|left_out| format!("left out: {left_out}\n")));
     text.push('\n');
-    for route in cards(table) {
-        text.push_str(&card(route, table.sanity.as_ref(), speed_max_m_s));
-    }
+    text.extend(cards(table).map(|route| card(route, table.sanity.as_ref(), speed_max_m_s)));
     text
 }
 
@@ -123,9 +116,7 @@ fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> Stri
         Some(lines) => writeln!(text, "; Selberg {:.3} m/s", lines.selberg_m_s),
         None => writeln!(text),
     };
-    for warning in &route.warnings {
-        let _ = writeln!(text, "  warning: {warning}");
-    }
+    text.extend(route.warnings.iter().map(|warning| format!("  warning: {warning}\n")));
     text
 }
 

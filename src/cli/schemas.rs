@@ -1,7 +1,6 @@
 //! `--json-schema`: the JSON Schema of what `--json` prints.
 
-use super::vocabulary::Answer;
-use crate::error::{Error, Result};
+use super::vocabulary::{Answer, Error, Result};
 
 macro_rules! schemas {
     ($($name:literal in $file:literal,)*) => {

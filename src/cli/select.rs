@@ -2,14 +2,16 @@
 
 mod text;
 
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs, Written, list};
-use crate::error::{Error, Result, ensure};
-use crate::flutter::FlutterSearch;
+use super::stages::{MODELS, Stages};
+use super::vocabulary::{
+    Answer, Error, FlutterSearch, OutputDir, Progress, Recommendation, Result, Study, StudyArgs,
+    Written, ensure, list,
+};
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
-use crate::selection::{Recommendation, Selection, metric_grid, select};
+use crate::selection::{Selection, metric_grid, select};
 use crate::signal::extremes;
-use crate::study::{Deck, ModelBlock, RecordSet, Study};
-use crate::wind_tunnel::{Record, RecordSource};
+use crate::study::{Deck, ModelBlock, RecordSet};
+use crate::wind_tunnel::RecordSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 pub(super) use text::parameter_maps;
@@ -85,17 +87,13 @@ enum ModelKind {
 pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
-    let made: Vec<Record>;
-    let measured: RecordSet;
-    let mut note = None;
-    let records: Vec<&dyn RecordSource> = if study.deck.records.is_empty() {
-        made = deck.virtual_records(&study)?;
-        made.iter().map(|r| r as _).collect()
-    } else {
-        measured = RecordSet::measured(&study)?;
-        note = measured.note.as_ref().map(|n| format!("note: {n}\n"));
-        measured.select(study.deck.speed_groups.as_deref())?
+    let made = study.deck.records.is_empty();
+    let all = match made {
+        true => RecordSet::in_memory(deck.virtual_records(&study)?),
+        false => RecordSet::measured(&study)?,
     };
+    let records = all.select(study.deck.speed_groups.as_deref().filter(|_| !made))?;
+    let note = all.note.as_ref().map(|n| format!("note: {n}\n"));
     let frequency_hz = compared_frequency_hz(args.frequency, &records)?;
     let (grid, selection) = judge(&args.choice, &study, &deck, &records, progress)?;
     let metrics = progress.during("comparing forces", || {
@@ -168,8 +166,30 @@ fn judge(
     Ok((grid, selection))
 }
 
-/// The study with the recommended model in front, as `select = true` asks for, and what speaks for it; that key is done with.
-pub(crate) fn with_selected(
+impl Stages<'_> {
+    /// Puts the recommended model in front of the study, where `select = true` asks for one, and says what speaks for it; that key is
+    /// done with.
+    pub(super) fn select(&mut self, records: Option<&RecordSet>) -> Result<Option<Recommendation>> {
+        let Some(records) = records.filter(|_| self.study.select) else {
+            return Ok(None);
+        };
+        let selected = selected(&self.study, &self.deck, records, self.progress);
+        match self.attempt("selection", selected)? {
+            Some((study, recommended)) => {
+                self.study = study;
+                Ok(recommended)
+            }
+            // that of an earlier run is not of these records
+            None => {
+                let file = format!("{}.json", selected_block().slug());
+                self.out.outdated(Path::new(MODELS).join(file));
+                Ok(None)
+            }
+        }
+    }
+}
+
+fn selected(
     study: &Study,
     deck: &Deck,
     records: &RecordSet,
@@ -188,11 +208,6 @@ pub(crate) fn with_saved(study: Study) -> Study {
         true => in_front(&study, selected_block()),
         false => study,
     }
-}
-
-/// Where `train` leaves it, in the folder of results.
-pub(crate) fn saved_model() -> PathBuf {
-    Path::new(super::stages::MODELS).join(format!("{}.json", selected_block().slug()))
 }
 
 fn selected_block() -> ModelBlock {
@@ -226,11 +241,7 @@ fn recommended(choice: &Choice, study: &Study, selection: &Selection) -> Result<
     } else {
         let fit = records_fit(study);
         block.records = Some(TimeFit {
-            form: Form::Laguerre {
-                filters: Some(found.filters),
-                feed_through: fit.form.feed_through(),
-                pole_per_transfer_function: false,
-            },
+            form: Form::laguerre(found.filters, fit.form.feed_through()),
             poles: PoleSearch::fixed(&[found.value]),
             own: Vec::new(),
             ..fit

@@ -1,16 +1,17 @@
 //! `aerodeck simulate`: a released section in steady wind, in this process.
 
-use super::vocabulary::{Answer, OutputDir, folder_of, list, motion_columns, warn};
+use super::vocabulary::{
+    Answer, Dof, Error, OutputDir, PlottedSeries, Result, TimePanel, TrainedModel, counted, ensure,
+    folder_of, list, motion_columns, sentences, time_history_figure, warn,
+};
 use super::{figures, stages};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
-use crate::error::{Error, Result, counted, ensure, non_negative, positive};
+use crate::error::{non_negative, positive};
 use crate::flutter::aliased_below;
-use crate::plausibility::{of_trained, sentences};
-use crate::report::{PlottedSeries, TimePanel, time_history_figure};
+use crate::plausibility::of_trained;
 use crate::response::{Inputs, Outputs, Stepper};
-use crate::section::Dof;
 use crate::state_space::damping_ratio;
-use crate::trained_model::{Experiment, TrainedModel};
+use crate::trained_model::Experiment;
 use crate::units::ReducedFrequency;
 use nalgebra::Complex;
 use serde::Serialize;
@@ -294,10 +295,7 @@ pub(super) fn motion_panels(dofs: &[Dof], runs: &[(&str, &[Vec<f64>])]) -> Vec<T
             let points = rows.iter().map(|row| (row[0], scale * row[1 + i]));
             PlottedSeries::new(*label, points.collect())
         });
-        TimePanel {
-            y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-            series: series.collect(),
-        }
+        TimePanel::new(format!("{} {} ({unit})", dof.name(), dof.symbol()), series)
     };
     dofs.iter().enumerate().map(panel).collect()
 }

@@ -1,9 +1,8 @@
 //! `aerodeck ssp`: a bridge as a system of FMUs.
 
-use super::vocabulary::{Answer, Progress};
+use super::vocabulary::{Answer, Label, Progress, Result, Runtime, counted};
 use super::{bridge, headline, stages};
-use crate::error::{Result, counted};
-use crate::fmu::package::{Label, Runtime, write_archive};
+use crate::fmu::package::write_archive;
 use crate::study::bridge::BridgeExportOptions;
 use std::path::PathBuf;
 

@@ -2,23 +2,22 @@
 
 use super::figures;
 use super::report::folder::digest;
-use super::vocabulary::{OutputDir, Progress};
+use super::vocabulary::{
+    Error, Export, FlutterStudy, Label, OutputDir, Progress, Result, Runtime, Study, TrainedModel,
+    Verdict, attempt, ensure, file_name,
+};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, ensure};
 use crate::files::derivatives::write_csv;
-use crate::files::text::file_name;
 use crate::files::toml_lines::of_a_kind_of_ours;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{Export, Label, Runtime, package};
+use crate::fmu::package::package;
 use crate::identification;
 use crate::study::{
-    Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, Study, TrainedWithReport,
-    UNCERTAINTY, flutter_study, interval_of, is_of_a_file, state_intervals, train_one,
+    Deck, FITS, KnownUncertainty, RecordSet, StageFailure, TrainedWithReport, UNCERTAINTY,
+    flutter_study, interval_of, is_of_a_file, state_intervals, train_one,
 };
-use crate::trained_model::TrainedModel;
-use crate::verdict::Verdict;
 use crate::wind_tunnel::{Record, RecordFile, RecordSource};
 use std::ffi::OsString;
 use std::path::Path;
@@ -34,27 +33,164 @@ pub(crate) const MODEL_FILE: &str = "model.json";
 /// The FMU.
 pub(crate) const FMU_FILE: &str = "deck_section.fmu";
 
-/// The records of the virtual tunnel, written as well.
-pub(crate) fn tunnel(
-    study: &Study,
-    deck: &Deck,
-    out: &mut OutputDir,
-    progress: &Progress,
-) -> Result<Vec<Record>> {
-    let stage = progress.stage("virtual wind tunnel");
-    let records = deck.virtual_records(study)?;
-    for name in virtual_records(&out.target(RECORDS)) {
-        out.outdated(Path::new(RECORDS).join(name));
+/// A study on its way through the stages.
+pub(crate) struct Stages<'a> {
+    /// With the selected model, once there is one.
+    pub study: Study,
+    pub deck: Deck,
+    pub out: OutputDir,
+    pub failed: Vec<StageFailure>,
+    pub progress: &'a Progress,
+}
+impl<'a> Stages<'a> {
+    /// With the deck that the study names.
+    pub(crate) fn new(study: Study, out: OutputDir, progress: &'a Progress) -> Result<Self> {
+        Ok(Self {
+            deck: Deck::load(&study)?,
+            study,
+            out,
+            failed: Vec::new(),
+            progress,
+        })
     }
-    let name = |r: &Record| Path::new(RECORDS).join(format!("{}.csv", file_name(&r.header.name)));
-    out.write_records(records.iter().map(|r| (name(r), r)))?;
-    // the header of a record names it; a line alone is the whole notice
-    let licence = deck.licence();
-    if licence.contains('\n') {
-        out.write(Path::new(RECORDS).join("LICENSE"), licence)?;
+
+    /// The value of a stage; a failure is noted.
+    pub(crate) fn attempt<T>(
+        &mut self,
+        stage: impl Into<String>,
+        result: Result<T>,
+    ) -> Result<Option<T>> {
+        attempt(&mut self.failed, stage, result)
     }
-    drop(stage);
-    Ok(records)
+
+    /// The records of the virtual tunnel, written as well.
+    pub(crate) fn tunnel(&mut self) -> Result<Vec<Record>> {
+        let _stage = self.progress.stage("virtual wind tunnel");
+        let (records, out) = (self.deck.virtual_records(&self.study)?, &mut self.out);
+        let folder = Path::new(RECORDS);
+        for name in virtual_records(&out.target(RECORDS)) {
+            out.outdated(folder.join(name));
+        }
+        let name = |r: &Record| folder.join(format!("{}.csv", file_name(&r.header.name)));
+        out.write_records(records.iter().map(|r| (name(r), r)))?;
+        // the header of a record names it; a line alone is the whole notice
+        let licence = self.deck.licence();
+        if licence.contains('\n') {
+            out.write(folder.join("LICENSE"), licence)?;
+        }
+        Ok(records)
+    }
+
+    /// Trains every model and writes model and report; without records (`None`) those that are fitted to the table.
+    ///
+    /// A model that cannot be trained is noted among the failures.
+    pub(crate) fn train(&mut self, records: Option<&RecordSet>) -> Result<Vec<TrainedWithReport>> {
+        let Self {
+            study,
+            deck,
+            out,
+            failed,
+            progress,
+        } = self;
+        let mut trained = Vec::with_capacity(study.models.len());
+        let none = RecordSet::none();
+        let mut first_error = None;
+        for (i, block) in study.models.iter().enumerate() {
+            let file = format!("{}.json", block.slug());
+            let [of_model, of_fit] = [MODELS, FITS].map(|folder| Path::new(folder).join(&file));
+            let of_uncertainty = of_fit.with_file_name(format!("{}.{UNCERTAINTY}", block.slug()));
+            let exported = (block.name == study.exported()?.name).then_some(Path::new(MODEL_FILE));
+            // what an earlier run left of a model is not of this one
+            for name in [&of_model, &of_fit, &of_uncertainty] {
+                out.outdated(name);
+            }
+            exported.iter().for_each(|name| out.outdated(name));
+            check_groups(study, i, deck, records)?;
+            if records.is_none() && block.table.is_none() {
+                let reason = "it needs records, which could not be made";
+                let stage = format!("training of {}", block.name);
+                failed.push(StageFailure::new(stage, reason));
+                continue;
+            }
+            let stage = progress.steps(&format!("training {}", block.name));
+            let result = train_one(
+                study,
+                block,
+                deck,
+                records.unwrap_or(&none),
+                &|p: identification::FitProgress| {
+                    let total = p.passes * p.records;
+                    let done = (p.pass - 1) * p.records + p.records_done;
+                    stage.at(done, total);
+                },
+            );
+            let result = match result {
+                Ok(result) => result,
+                Err(e) if is_of_a_file(&e) => return Err(e),
+                Err(e) => {
+                    failed.push(StageFailure::new(format!("training of {}", block.name), &e));
+                    first_error = first_error.or(Some(e));
+                    continue;
+                }
+            };
+            let json = result.model.to_json()?;
+            out.write(of_model, &json)?;
+            out.write_json(of_fit, "fit", &result.report)?;
+            if let Ok(uncertainty) = &result.uncertainty {
+                out.write(of_uncertainty, uncertainty.to_json()?)?;
+            }
+            if let Some(name) = exported {
+                out.write(name, json)?;
+            }
+            trained.push(result);
+            drop(stage);
+        }
+        leave_fingerprint(deck, out)?;
+        match first_error {
+            Some(error @ Error::Input(_)) if trained.is_empty() => Err(error),
+            _ => Ok(trained),
+        }
+    }
+
+    /// Curves and onsets of models that were trained just now, with their intervals.
+    pub(crate) fn flutter_of(&mut self, trained: &[TrainedWithReport]) -> Result<FlutterStudy> {
+        let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
+        let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
+        let mut results = flutter(&self.study, &self.deck, &models, &known, self.progress)?;
+        self.failed.append(&mut results.failed);
+        Ok(results)
+    }
+
+    /// Packs a model of the study with all runtimes that are there.
+    pub(crate) fn export(
+        &self,
+        own: &TrainedWithReport,
+        verdict: &Verdict,
+        allow_unstable: bool,
+    ) -> Result<Vec<u8>> {
+        let _stage = self.progress.stage("packing the FMU");
+        let label = Label {
+            name: Some(self.study.name.clone()),
+            author: self.study.export.author.clone(),
+            copyright: self.study.export.copyright.clone(),
+            generated: None,
+        };
+        let label = label.dated()?;
+        let (model, structure) = (&own.model, own.model.section.structure()?);
+        let section = CoupledSection::with_model(&structure, &model.model)?;
+        let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
+        let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
+        let interval = found.onset();
+        let interval = interval.map(|o| interval_of(&structure, model, &own.uncertainty, o));
+        let export = Export {
+            label,
+            bounds: interval.as_ref().and_then(OnsetBounds::from_interval),
+            verdict: Some(verdict.clone()),
+            allow_unstable,
+            ..Export::default()
+        };
+        package(model, &Runtime::available()?, export).map_err(or_allow_unstable)
+    }
 }
 
 /// Names of the records in a folder that the virtual tunnel made.
@@ -66,78 +202,6 @@ fn virtual_records(folder: &Path) -> Vec<OsString> {
     };
     let made = entries.filter(|e| of_tunnel(&e.path()));
     made.map(|e| e.file_name()).collect()
-}
-
-/// Trains every model and writes model and report; without records (`None`) those that are fitted to the table.
-///
-/// A model that cannot be trained is noted in `failed`.
-pub(crate) fn train(
-    study: &Study,
-    deck: &Deck,
-    records: Option<&RecordSet>,
-    out: &mut OutputDir,
-    failed: &mut Vec<StageFailure>,
-    progress: &Progress,
-) -> Result<Vec<TrainedWithReport>> {
-    let mut trained = Vec::with_capacity(study.models.len());
-    let none = RecordSet::none();
-    let mut first_error = None;
-    for (i, block) in study.models.iter().enumerate() {
-        // what an earlier run left of a model is not of this one
-        for name in [MODELS, FITS].map(Path::new) {
-            out.outdated(name.join(format!("{}.json", block.slug())));
-        }
-        out.outdated(Path::new(FITS).join(format!("{}.{UNCERTAINTY}", block.slug())));
-        if block.name == study.exported()?.name {
-            out.outdated(MODEL_FILE);
-        }
-        check_groups(study, i, deck, records)?;
-        if records.is_none() && block.table.is_none() {
-            let reason = "it needs records, which could not be made";
-            let stage = format!("training of {}", block.name);
-            failed.push(StageFailure::new(stage, reason));
-            continue;
-        }
-        let stage = progress.steps(&format!("training {}", block.name));
-        let result = train_one(
-            study,
-            block,
-            deck,
-            records.unwrap_or(&none),
-            &|p: identification::FitProgress| {
-                let total = p.passes * p.records;
-                let done = (p.pass - 1) * p.records + p.records_done;
-                stage.at(done, total);
-            },
-        );
-        let result = match result {
-            Ok(result) => result,
-            Err(e) if is_of_a_file(&e) => return Err(e),
-            Err(e) => {
-                failed.push(StageFailure::new(format!("training of {}", block.name), &e));
-                first_error = first_error.or(Some(e));
-                continue;
-            }
-        };
-        let file = format!("{}.json", block.slug());
-        let json = result.model.to_json()?;
-        out.write(Path::new(MODELS).join(&file), &json)?;
-        out.write_json(Path::new(FITS).join(&file), "fit", &result.report)?;
-        let file = Path::new(FITS).join(format!("{}.{UNCERTAINTY}", block.slug()));
-        if let Ok(uncertainty) = &result.uncertainty {
-            out.write(file, uncertainty.to_json()?)?;
-        }
-        if block.name == study.exported()?.name {
-            out.write(MODEL_FILE, json)?;
-        }
-        trained.push(result);
-        drop(stage);
-    }
-    leave_fingerprint(deck, out)?;
-    match first_error {
-        Some(error @ Error::Input(_)) if trained.is_empty() => Err(error),
-        _ => Ok(trained),
-    }
 }
 
 /// Writes of which table the models are. What other commands left beside models of another table is not of this one.
@@ -245,60 +309,10 @@ pub(crate) fn flutter(
     known: &[KnownUncertainty],
     progress: &Progress,
 ) -> Result<FlutterStudy> {
-    let stage = progress.stage("modes over wind speed");
+    let _stage = progress.stage("modes over wind speed");
     let mut results = flutter_study(study, deck, models)?;
     state_intervals(&mut results, study, models, known)?;
-    drop(stage);
     Ok(results)
-}
-
-/// The same of models that were trained just now.
-pub(crate) fn flutter_of(
-    study: &Study,
-    deck: &Deck,
-    trained: &[TrainedWithReport],
-    failed: &mut Vec<StageFailure>,
-    progress: &Progress,
-) -> Result<FlutterStudy> {
-    let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
-    let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
-    let mut results = flutter(study, deck, &models, &known, progress)?;
-    failed.append(&mut results.failed);
-    Ok(results)
-}
-
-/// Packs a model of a study with all runtimes that are there.
-pub(crate) fn export(
-    own: &TrainedWithReport,
-    study: &Study,
-    verdict: &Verdict,
-    allow_unstable: bool,
-    progress: &Progress,
-) -> Result<Vec<u8>> {
-    let stage = progress.stage("packing the FMU");
-    let label = Label {
-        name: Some(study.name.clone()),
-        author: study.export.author.clone(),
-        copyright: study.export.copyright.clone(),
-        generated: None,
-    };
-    let label = label.dated()?;
-    let (model, structure) = (&own.model, own.model.section.structure()?);
-    let section = CoupledSection::with_model(&structure, &model.model)?;
-    let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
-    let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
-    let interval = found.onset();
-    let interval = interval.map(|o| interval_of(&structure, model, &own.uncertainty, o));
-    let export = Export {
-        label,
-        bounds: interval.as_ref().and_then(OnsetBounds::from_interval),
-        verdict: Some(verdict.clone()),
-        allow_unstable,
-        ..Export::default()
-    };
-    let bytes = package(model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
-    drop(stage);
-    Ok(bytes)
 }
 
 /// A refused export with the flag that allows it.

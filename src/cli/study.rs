@@ -1,21 +1,18 @@
 //! `aerodeck study`: the whole chain of a study file.
 
 use super::report::folder::{REPORT, SUMMARY, today};
+use super::stages::{self, Stages};
 use super::summary::{FitSummary, Summary};
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
-use super::{
-    buffeting, figures, headline, measured_forces, report, result_files, select, stages, study_run,
-    text,
+use super::vocabulary::{
+    Answer, Error, FlutterSearch, FlutterStudy, OnsetMethod, OutputDir, Progress, Result, Study,
+    StudyArgs, Verdict, sentences,
 };
-use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, OnsetMethod};
-use crate::plausibility::sentences;
-use crate::selection::Recommendation;
+use super::{buffeting, figures, headline, measured_forces, report, result_files, study_run, text};
 use crate::study::{
-    Deck, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport, attempt,
-    interval_of, section_evidence, stepped_onset, study_findings,
+    RecordSet, StageFailure, SteppedOnset, TrainedWithReport, interval_of, section_evidence,
+    stepped_onset, study_findings,
 };
-use crate::verdict::{Evidence, Verdict};
+use crate::verdict::Evidence;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -44,27 +41,19 @@ pub(crate) fn run_chain(
     study: Study,
     text: &str,
     file: Option<&Path>,
-    mut out: OutputDir,
+    out: OutputDir,
     allow_unstable: bool,
     progress: &Progress,
 ) -> Result<Answer> {
-    let deck = Deck::load(&study)?;
-    let (study_file, study_text) = study_run::leave(&study, text, file, &mut out)?;
-    let mut chain = StudyStages {
-        study,
-        deck,
-        out,
-        failed: Vec::new(),
-        progress,
-    };
+    let mut chain = Stages::new(study, out, progress)?;
+    let (study_file, study_text) = study_run::leave(&chain.study, text, file, &mut chain.out)?;
     let records = chain.records()?;
     let selection = chain.select(records.as_ref())?;
-    let trained = chain.train(records.as_ref())?;
-    let failed = &mut chain.failed;
-    let mut results = stages::flutter_of(&chain.study, &chain.deck, &trained, failed, progress)?;
+    let trained = chain.trained(records.as_ref())?;
+    let mut results = chain.flutter_of(&trained)?;
     let own = chain.own(&trained)?;
     let verdict = chain.verdict(own, &results);
-    let fmu = chain.export(own, &verdict, allow_unstable)?;
+    let fmu = chain.packed(own, &verdict, allow_unstable)?;
     let stepped = chain.step(own, fmu, &mut results)?;
     let verdict = chain.verdict(own, &results);
     chain.draw(&trained, &results, &verdict)?;
@@ -80,49 +69,18 @@ pub(crate) fn run_chain(
     chain.finish(summary)
 }
 
-/// A study on its way through the stages.
-struct StudyStages<'a> {
-    /// With the selected model, once there is one.
-    study: Study,
-    deck: Deck,
-    out: OutputDir,
-    failed: Vec<StageFailure>,
-    progress: &'a Progress,
-}
-
-impl StudyStages<'_> {
-    /// The value of a stage; a failure is noted.
-    fn attempt<T>(&mut self, stage: &str, result: Result<T>) -> Result<Option<T>> {
-        attempt(&mut self.failed, stage, result)
-    }
-
+impl Stages<'_> {
     /// The records of the study: measured, or those of the virtual tunnel.
     fn records(&mut self) -> Result<Option<RecordSet>> {
-        let records = if self.study.deck.records.is_empty() {
-            stages::tunnel(&self.study, &self.deck, &mut self.out, self.progress)
-                .map(RecordSet::in_memory)
-        } else {
-            RecordSet::measured(&self.study)
+        let records = match self.study.deck.records.is_empty() {
+            true => self.tunnel().map(RecordSet::in_memory),
+            false => RecordSet::measured(&self.study),
         };
         self.attempt(RECORDS, records)
     }
 
-    /// Adds the selected model to the study, where one is asked for.
-    fn select(&mut self, records: Option<&RecordSet>) -> Result<Option<Recommendation>> {
-        let Some(records) = records.filter(|_| self.study.select) else {
-            return Ok(None);
-        };
-        let selected = select::with_selected(&self.study, &self.deck, records, self.progress);
-        let selected = self.attempt("selection", selected)?;
-        Ok(selected.and_then(|(study, recommended)| {
-            self.study = study;
-            recommended
-        }))
-    }
-
-    fn train(&mut self, records: Option<&RecordSet>) -> Result<Vec<TrainedWithReport>> {
-        let (study, deck, out) = (&self.study, &self.deck, &mut self.out);
-        let trained = stages::train(study, deck, records, out, &mut self.failed, self.progress)?;
+    fn trained(&mut self, records: Option<&RecordSet>) -> Result<Vec<TrainedWithReport>> {
+        let trained = self.train(records)?;
         let no_records = self.failed.iter().find(|f| f.stage == RECORDS);
         match no_records.filter(|_| trained.is_empty()) {
             Some(StageFailure { reason, .. }) => Err(Error::Numerical(format!(
@@ -139,7 +97,7 @@ impl StudyStages<'_> {
     }
 
     /// Packs the model that the study exports; where its FMU stands for now.
-    fn export(
+    fn packed(
         &mut self,
         own: Option<&TrainedWithReport>,
         verdict: &Verdict,
@@ -151,7 +109,7 @@ impl StudyStages<'_> {
             self.failed.push(StageFailure::new("export", reason));
             return Ok(None);
         };
-        let bytes = stages::export(own, &self.study, verdict, allow_unstable, self.progress);
+        let bytes = self.export(own, verdict, allow_unstable);
         let Some(bytes) = self.attempt("export", bytes)? else {
             return Ok(None);
         };

@@ -1,9 +1,7 @@
 //! The study that was run, left with its results: a folder of results can be run again by itself.
 
-use super::vocabulary::OutputDir;
-use crate::error::{Error, Result};
+use super::vocabulary::{Error, OutputDir, Result, Study};
 use crate::files::derivatives::{file_and_sheet, is_table_file, named_sheet};
-use crate::study::Study;
 use std::path::{Path, PathBuf};
 
 /// Its usual name.

@@ -1,11 +1,9 @@
 //! `summary.json` of a study.
 
 use super::stages::FMU_FILE;
+use super::vocabulary::{Finding, FlutterStudy, Recommendation, Verdict};
 use crate::identification::FitReport;
-use crate::plausibility::Finding;
-use crate::selection::Recommendation;
-use crate::study::{FlutterStudy, KnownUncertainty, SpeedRange, StageFailure, SteppedOnset};
-use crate::verdict::Verdict;
+use crate::study::{KnownUncertainty, SpeedRange, StageFailure, SteppedOnset};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -3,15 +3,13 @@
 use super::headline;
 use super::study_run::BESIDE;
 use super::summary::Summary;
-use super::vocabulary::{TextTable, Written, list, speed_or};
-use crate::error::counted;
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnwantedGrowth};
-use crate::identification::{ConstraintReport, FitReport};
-use crate::section::Dof;
-use crate::selection::Recommendation;
-use crate::study::{
-    Deck, Divergence, FlutterStudy, KnownUncertainty, StageFailure, Study, TrainedWithReport,
+use super::vocabulary::{
+    Dof, FlutterStudy, OnsetMethod, Recommendation, Study, TextTable, Written, counted, list,
+    speed_or,
 };
+use crate::flutter::{Onset, OnsetInterval, UnwantedGrowth};
+use crate::identification::{ConstraintReport, FitReport};
+use crate::study::{Deck, Divergence, KnownUncertainty, StageFailure};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -53,9 +51,7 @@ pub(crate) fn chain(
             let _ = writeln!(text, "warning: {}: {warning}", summary.model);
         }
     }
-    if let Some(line) = &summary.buffeting {
-        let _ = writeln!(text, "Gusts     {line}");
-    }
+    text.extend(summary.buffeting.iter().map(|line| format!("Gusts     {line}\n")));
     text.push_str(&failures(&summary.failed));
     let others = rest.lines().filter(|l| l.starts_with("warning: "));
     let warnings = others.filter(|l| !text.contains(l)).count();
@@ -106,20 +102,11 @@ fn details(study: &Study, summary: &Summary) -> String {
         s.air_density_kg_m3
     );
     let _ = writeln!(text, "Speeds    {}\n", study.speeds().explain());
-    for of in &summary.fits {
-        text.push_str(&fit(&of.model, &of.report, &of.uncertainty));
-    }
+    text.extend(summary.fits.iter().map(|of| fit(&of.model, &of.report, &of.uncertainty)));
     text.push('\n');
     text.push_str(&found(&summary.results));
-    if let Some(stepped) = &summary.stepped {
-        let _ = writeln!(text, "{}", stepped.explain());
-    }
+    text.extend(summary.stepped.iter().map(|stepped| format!("{}\n", stepped.explain())));
     text
-}
-
-/// As [`fit`], of a model that was trained just now.
-pub(super) fn fit_of(trained: &TrainedWithReport) -> String {
-    fit(&trained.model.name, &trained.report, &trained.uncertainty)
 }
 
 /// One fit.
@@ -148,25 +135,20 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
         TAU / high,
         TAU / low,
     );
-    if let Some(constraints) = &report.constraints {
-        text.push_str(&held(constraints));
-    }
+    text.extend(report.constraints.iter().map(held));
     match uncertainty {
         Ok(known) => text.extend(known.explain().map(|line| format!("          {line}\n"))),
         Err(reason) => text.push_str(&format!("          no interval of the onset: {reason}\n")),
     }
-    for note in &report.notes {
-        let _ = writeln!(text, "          note: {note}");
-    }
+    text.extend(report.notes.iter().map(|note| format!("          note: {note}\n")));
     text
 }
 
 /// What held the fit back, what that costs and what it does to the onset.
 fn held(constraints: &ConstraintReport) -> String {
     let mut text = String::new();
-    for sentence in &constraints.sentences {
-        let _ = writeln!(text, "          held: {sentence}");
-    }
+    let held = constraints.sentences.iter();
+    text.extend(held.map(|sentence| format!("          held: {sentence}\n")));
     if let Some((cost, points)) = constraints.dearest() {
         let (force, motion) = (force_symbol(cost.force), cost.motion.symbol());
         let _ = write!(
@@ -217,9 +199,7 @@ pub(crate) fn onsets(results: &FlutterStudy) -> String {
         text.push_str(&without_interval(o));
         text.push_str(&warnings(&o.at.model, &o.warnings));
     }
-    for s in &results.unstable {
-        text.push_str(&warnings(&s.at.model, &s.warnings));
-    }
+    text.extend(results.unstable.iter().map(|s| warnings(&s.at.model, &s.warnings)));
     text
 }
 

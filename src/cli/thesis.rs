@@ -1,22 +1,22 @@
 //! `aerodeck thesis`: the headline of the source document, repeated, with a page of its figures and tables that can be computed, its
 //! numbers beside ours.
 
-use super::vocabulary::{Answer, OutputDir, Progress, Temporary, list};
-use super::{headline, result_files, stages, text};
+use super::stages::Stages;
+use super::vocabulary::{
+    Answer, Dof, Error, Figure, FlutterStudy, OutputDir, PageSection, Progress, Result,
+    SectionsPage, Study, Temporary, list, rendered,
+};
+use super::{headline, result_files, text};
 use crate::aerodynamics::laguerre::discrete_memory;
 use crate::cli::compare::thesis_comparisons;
-use crate::cli::laboratory::svg;
+use crate::cli::laboratory::drawn;
 use crate::cli::result_files::{FIGURE, RESPONSE, ROOTS};
 use crate::cli::select::parameter_maps;
-use crate::error::{Error, Result};
 use crate::identification::{Grid, GridAxis, TimeWeights};
 use crate::reference::{OF_THE_DECKS, first_order_example, laguerre_functions};
-use crate::report::{
-    Figure, PageSection, SectionsPage, first_order_figures, laguerre_figures, rendered,
-};
-use crate::section::Dof;
+use crate::report::{first_order_figures, laguerre_figures};
 use crate::selection::metric_grid;
-use crate::study::{Deck, FlutterStudy, RecordSet, Study, thesis_study_text};
+use crate::study::{RecordSet, thesis_study_text};
 use crate::wind_tunnel::RecordSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -29,17 +29,18 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
     let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let aside = Temporary::new(aside.keep());
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;
-    let deck = Deck::load(&study)?;
-    let mut out = OutputDir::new(aside.path())?;
-    let records = RecordSet::in_memory(stages::tunnel(&study, &deck, &mut out, progress)?);
-    let mut failed = Vec::new();
-    let all = Some(&records);
-    let trained = stages::train(&study, &deck, all, &mut out, &mut failed, progress)?;
-    let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
+    let mut stages = Stages::new(study, OutputDir::new(aside.path())?, progress)?;
+    let records = RecordSet::in_memory(stages.tunnel()?);
+    let trained = stages.train(Some(&records))?;
+    let results = stages.flutter_of(&trained)?;
+    let Stages {
+        study,
+        mut out,
+        failed,
+        ..
+    } = stages;
     let mut text = format!("{}\n\n", study.name);
-    for result in &trained {
-        text.push_str(&text::fit_of(result));
-    }
+    text.extend(trained.iter().map(|t| text::fit(&t.model.name, &t.report, &t.uncertainty)));
     text.push('\n');
     text.push_str(&text::onsets(&results));
     text.push_str(&text::deviations(&results));
@@ -79,7 +80,17 @@ fn thesis_page(
     let mut sections = vec![functions()?, first_order(progress)?];
     sections.push(parameters(records, progress)?);
     sections.extend(thesis_comparisons(progress)?);
-    sections.extend([onsets(results, out), errata(), not_computed()]);
+    sections.push(onsets(results, out));
+    sections.push(PageSection::table(
+        "Errata that change a number",
+        "equation | printed | here",
+        rows_of(include_str!("thesis/errata.txt")),
+    ));
+    sections.push(PageSection::table(
+        "Figures that are not computed",
+        "figure | why",
+        rows_of(include_str!("thesis/not_computed.txt")),
+    ));
     let mut onsets = results.onsets.iter();
     let own = onsets.find(|o| o.at.model != "interpolated table");
     let own = own.map(|o| format!("{:.1} m/s", o.at.speed_m_s));
@@ -102,15 +113,12 @@ fn rows_of(file: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, String)> {
+fn captioned(figures: Vec<(&'static str, Figure)>) -> Vec<(String, Figure)> {
     let one = |(number, figure): (&str, Figure)| {
         let mut captions = include_str!("thesis/captions.txt").lines();
         let known = captions.find_map(|line| line.strip_prefix(number)?.strip_prefix(" | "));
         let caption = known.unwrap_or_default();
-        (
-            format!("Figure {number}: {caption}"),
-            figure.svg().to_owned(),
-        )
+        (format!("Figure {number}: {caption}"), figure)
     };
     figures.into_iter().map(one).collect()
 }
@@ -148,8 +156,7 @@ fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<Page
             metrics.motion.name(),
             metrics.frequency_hz
         );
-        let figure = parameter_maps(&alphas, FILTERS, &metrics)?;
-        figures.push((caption, figure.svg().to_owned()));
+        figures.push((caption, parameter_maps(&alphas, FILTERS, &metrics)?));
     }
     drop(stage);
     Ok(PageSection {
@@ -157,16 +164,6 @@ fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<Page
         figures,
         ..PageSection::default()
     })
-}
-
-/// Figures that are not here, and why.
-fn not_computed() -> PageSection {
-    PageSection {
-        title: "Figures that are not computed".to_owned(),
-        header: "figure | why",
-        rows: rows_of(include_str!("thesis/not_computed.txt")),
-        ..PageSection::default()
-    }
 }
 
 fn first_order(progress: &Progress) -> Result<PageSection> {
@@ -242,17 +239,7 @@ fn onsets(results: &FlutterStudy, out: &OutputDir) -> PageSection {
         rows: results.onsets.iter().map(row).collect(),
         figures: figures
             .into_iter()
-            .filter_map(|(stem, caption)| Some((caption.to_owned(), svg(out, stem)?)))
+            .filter_map(|(stem, caption)| Some((caption.to_owned(), drawn(out, stem)?)))
             .collect(),
-    }
-}
-
-/// Corrections of printed equations that change a number.
-fn errata() -> PageSection {
-    PageSection {
-        title: "Errata that change a number".to_owned(),
-        header: "equation | printed | here",
-        rows: rows_of(include_str!("thesis/errata.txt")),
-        ..PageSection::default()
     }
 }

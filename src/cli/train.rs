@@ -1,50 +1,38 @@
 //! `aerodeck train`: the models of a study from its records and tables.
 
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
-use super::{select, stages, text};
-use crate::error::Result;
+use super::stages::{RECORDS, Stages};
+use super::text;
+use super::vocabulary::{Answer, OutputDir, Progress, Result, StudyArgs};
 use crate::fmu::package::growth_of;
-use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
+use crate::study::{ModelGrowth, RecordSet};
 
 /// Runs the command.
 pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
-    let mut study = args.read()?;
-    let deck = Deck::load(&study)?;
-    let directory = args.directory();
-    let records = if study.deck.records.is_empty() {
-        RecordSet::in_folder(&study, &deck, &directory.join(stages::RECORDS))?
-    } else {
-        RecordSet::measured(&study)?
+    let study = args.read()?;
+    let mut stages = Stages::new(study, OutputDir::new(&args.directory())?, progress)?;
+    let (study, deck) = (&stages.study, &stages.deck);
+    let records = match study.deck.records.is_empty() {
+        true => RecordSet::in_folder(study, deck, &stages.out.target(RECORDS))?,
+        false => RecordSet::measured(study)?,
     };
-    let mut out = OutputDir::new(&directory)?;
-    let (mut failed, mut selection) = (Vec::new(), None);
-    if study.select {
-        let selected = select::with_selected(&study, &deck, &records, progress);
-        match attempt(&mut failed, "selection", selected)? {
-            Some(selected) => (study, selection) = selected,
-            // that of an earlier run is not of these records
-            None => out.outdated(select::saved_model()),
-        }
-    }
-    let all = Some(&records);
-    let trained = stages::train(&study, &deck, all, &mut out, &mut failed, progress)?;
-    let mut text = format!("{}\n{}\n", study.name, deck.description());
-    text.push_str(&text::deck_warnings(&deck));
+    let selection = stages.select(Some(&records))?;
+    let trained = stages.train(Some(&records))?;
+    let mut text = format!("{}\n{}\n", stages.study.name, stages.deck.description());
+    text.push_str(&text::deck_warnings(&stages.deck));
     text.push_str(&text::selected(selection.as_ref()));
     let mut growths = Vec::new();
     for result in &trained {
-        text.push_str(&text::fit_of(result));
+        let name = &result.model.name;
+        text.push_str(&text::fit(name, &result.report, &result.uncertainty));
         let growth = growth_of(&result.model);
-        let stage = format!("scan for growth of {}", result.model.name);
-        if let Some(growth) = attempt(&mut failed, stage, growth)? {
-            text.push_str(&text::growth(&result.model.name, &growth));
-            growths.push(ModelGrowth {
-                model: result.model.name.clone(),
-                growth,
-            });
+        let stage = format!("scan for growth of {name}");
+        if let Some(growth) = stages.attempt(stage, growth)? {
+            text.push_str(&text::growth(name, &growth));
+            let model = name.clone();
+            growths.push(ModelGrowth { model, growth });
         }
     }
-    text.push_str(&text::failures(&failed));
+    text.push_str(&text::failures(&stages.failed));
     let fits: Vec<_> = trained
         .iter()
         .map(|t| {
@@ -56,8 +44,9 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
         })
         .collect();
     let value = serde_json::json!({
-        "trained": fits, "selection": selection, "growth": growths, "failed": failed,
-        "warnings": deck.warnings()
+        "trained": fits, "selection": selection, "growth": growths, "failed": stages.failed,
+        "warnings": stages.deck.warnings()
     });
-    Ok(out.answer(text, value)?.passed_if(failed.is_empty()))
+    let passed = stages.failed.is_empty();
+    Ok(stages.out.answer(text, value)?.passed_if(passed))
 }

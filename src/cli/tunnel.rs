@@ -1,18 +1,15 @@
 //! `aerodeck tunnel`: records of the virtual wind tunnel.
 
-use super::stages;
-use super::vocabulary::{Answer, OutputDir, Progress, StudyArgs};
-use crate::error::Result;
-use crate::study::Deck;
+use super::stages::Stages;
+use super::vocabulary::{Answer, OutputDir, Progress, Result, StudyArgs};
 use std::fmt::Write as _;
 
 /// Runs the command.
 pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
     let study = args.read()?;
-    let deck = Deck::load(&study)?;
-    let mut out = OutputDir::new(&args.directory())?;
-    let records = stages::tunnel(&study, &deck, &mut out, progress)?;
-    let mut text = format!("{}\n{}\n", study.name, deck.description());
+    let mut stages = Stages::new(study, OutputDir::new(&args.directory())?, progress)?;
+    let records = stages.tunnel()?;
+    let mut text = format!("{}\n{}\n", stages.study.name, stages.deck.description());
     for record in &records {
         let h = &record.header;
         let samples = record.motion.first().map_or(0, Vec::len);
@@ -26,5 +23,6 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
         );
     }
     let headers: Vec<_> = records.iter().map(|r| r.header.clone()).collect();
-    out.answer(text, serde_json::json!({ "records": headers }))
+    let value = serde_json::json!({ "records": headers });
+    stages.out.answer(text, value)
 }

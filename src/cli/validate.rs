@@ -1,7 +1,6 @@
 //! `aerodeck validate`: the reference cases, expected against found.
 
-use super::vocabulary::{Answer, Progress};
-use crate::error::Result;
+use super::vocabulary::{Answer, Progress, Result};
 use crate::reference::{CaseResult, UserCase, run as run_case, run_all, validation_table};
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -1,9 +1,7 @@
 //! What the commands on a wind file have in common.
 
-use super::vocabulary::{OutputDir, folder_of, warn};
-use crate::error::Result;
-use crate::plausibility::sentences;
-use crate::study::{WindStudy, example_wind_study_text};
+use super::vocabulary::{OutputDir, Result, WindStudy, folder_of, sentences, warn};
+use crate::study::example_wind_study_text;
 use std::path::{Path, PathBuf};
 
 /// Name under which the example is left with the user.

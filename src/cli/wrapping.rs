@@ -19,55 +19,39 @@ pub(super) fn wrapped(text: &str) -> String {
             && line.chars().nth(HANGING).is_some_and(|c| c != ' ');
         let start: String = line.chars().take_while(|c| *c == ' ').collect();
         let indent = if entry { HANGING } else { start.len().max(2) };
-        let (mut row, mut length) = (start.clone(), start.len());
         // the words that begin an entry keep their distance
         let head: String = line.chars().take(HANGING).collect();
-        let body = if entry && start.is_empty() {
-            (row, length) = (head.clone(), HANGING);
-            &line[head.len()..]
-        } else {
-            line
+        let (start, body) = match entry && start.is_empty() {
+            true => (&head, &line[head.len()..]),
+            false => (&start, line),
         };
-        let mut first = true;
-        for word in body.split_whitespace() {
-            let width = word.chars().count();
-            if !first && length + 1 + width > COLUMNS {
-                all.push_str(&row);
-                all.push('\n');
-                (row, length) = (" ".repeat(indent), indent);
-                first = true;
-            }
-            if !first {
-                row.push(' ');
-                length += 1;
-            }
-            row.push_str(word);
-            length += width;
-            first = false;
-        }
-        all.push_str(&row);
-        all.push('\n');
+        all.push_str(&filled(start, body, indent));
     }
     all
 }
 
 /// `head`, and `text` cut at spaces in a column of its own beside it: a row of a table whose last cell is a sentence.
 pub(super) fn beside(head: &str, text: &str) -> String {
-    let indent = head.chars().count() + 1;
-    let (mut all, mut length) = (head.to_owned(), head.chars().count());
+    filled(&format!("{head} "), text, head.chars().count() + 1)
+}
+
+/// What stands at the `start` of a line, then the words of the text; further lines begin with as many spaces as `indent` says.
+fn filled(start: &str, text: &str, indent: usize) -> String {
+    let (mut all, mut length) = (start.to_owned(), start.chars().count());
     for (i, word) in text.split_whitespace().enumerate() {
         let width = word.chars().count();
         if i > 0 && length + 1 + width > COLUMNS {
             all.push('\n');
-            all.push_str(&" ".repeat(indent - 1));
-            length = indent - 1;
+            all.push_str(&" ".repeat(indent));
+            length = indent;
+        } else if i > 0 {
+            all.push(' ');
+            length += 1;
         }
-        all.push(' ');
         all.push_str(word);
-        length += 1 + width;
+        length += width;
     }
-    all.push('\n');
-    all
+    all + "\n"
 }
 
 /// Whether a line is a row of a table: cells with two spaces or more between them, and not merely words that begin an entry.

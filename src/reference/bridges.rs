@@ -52,10 +52,7 @@ fn iabse_2a_bridge(motions: &[Dof], against_lateral: bool) -> Result<Bridge> {
 fn onset(bridge: &Bridge, speed_max_m_s: f64) -> Result<CriticalPoint> {
     let forces = bridge.forces();
     let range = forces.known_range();
-    let search = OnsetSearch {
-        speed_max_m_s,
-        speeds: 100,
-    };
+    let search = OnsetSearch::new(speed_max_m_s, 100);
     let found = pk_onset("reference", &bridge.structure(), &forces, &search, range)?;
     let onset = found.onset().map(|onset| onset.at.clone());
     onset.ok_or_else(|| Error::Numerical(found.explain()))

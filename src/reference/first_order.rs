@@ -46,10 +46,8 @@ const MEMORY: (usize, usize) = (176, 3);
 pub struct SampledTransfer {
     /// What it belongs to.
     pub label: String,
-    /// Magnitude at [`FirstOrderResults::frequencies_hz`].
-    pub magnitude: Vec<f64>,
-    /// Phase there, degrees.
-    pub phase_deg: Vec<f64>,
+    /// Frequency, Hz, magnitude, and phase, degrees.
+    pub points: Vec<(f64, f64, f64)>,
     /// Largest error relative to the system between the lowest and highest training frequency.
     pub worst_in_band: f64,
 }
@@ -65,8 +63,6 @@ pub struct FirstOrderResults {
     pub validation_error: f64,
     /// Coefficients of the model.
     pub coefficients: Vec<f64>,
-    /// Frequencies of the transfer functions, Hz.
-    pub frequencies_hz: Vec<f64>,
     /// The system.
     pub system: SampledTransfer,
     /// The system discretised by Tustin's rule (2.29).
@@ -132,7 +128,6 @@ pub fn first_order_example() -> Result<FirstOrderResults> {
         tustin: sampled("Tustin".into(), &frequencies_hz, &tustin, &system),
         system: sampled("system".into(), &frequencies_hz, &system, &system),
         training: [input, training.force[0].clone()],
-        frequencies_hz,
         coefficients,
     })
 }
@@ -227,10 +222,11 @@ fn sampled(
         .zip(g.iter().zip(system))
         .filter(|(f, _)| band.contains(*f))
         .map(|(_, (g, h))| (g - h).norm() / h.norm());
+    let values = frequencies_hz.iter().zip(g);
+    let points = values.map(|(f, z)| (*f, z.norm(), z.arg().to_degrees()));
     SampledTransfer {
         label,
-        magnitude: g.iter().map(|z| z.norm()).collect(),
-        phase_deg: g.iter().map(|z| z.arg().to_degrees()).collect(),
+        points: points.collect(),
         worst_in_band: errors.fold(0.0, f64::max),
     }
 }

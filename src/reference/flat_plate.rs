@@ -82,10 +82,7 @@ pub(super) fn iabse_sanity() -> Result<Vec<f64>> {
 
 pub(super) fn iabse_by_iteration() -> Result<Vec<f64>> {
     let structure = SectionModel::iabse_1_1a().structure()?;
-    let search = OnsetSearch {
-        speed_max_m_s: 100.0,
-        speeds: 100,
-    };
+    let search = OnsetSearch::new(100.0, 100);
     let found = pk_onset("", &structure, &WITHOUT_ROTARY, &search, None)?;
     let onset = onset_of(&found, search.speed_max_m_s)?;
     Ok(vec![onset.at.speed_m_s, onset.at.frequency_hz])
@@ -160,10 +157,7 @@ pub(super) fn unbalanced() -> Result<Vec<f64>> {
     section.axis_offset_m = Some(0.05);
     section.mass_offset_m = Some(0.03);
     let onset = by_determinant(&section, &FlatPlate::default(), WIDE)?;
-    let search = OnsetSearch {
-        speed_max_m_s: 42.0,
-        speeds: 84,
-    };
+    let search = OnsetSearch::new(42.0, 84);
     let structure = section.structure()?;
     let found = pk_onset("", &structure, &FlatPlate::default(), &search, None)?;
     let by_iteration = onset_of(&found, search.speed_max_m_s)?;

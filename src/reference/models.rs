@@ -49,11 +49,7 @@ pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
         };
         Ok::<_, Error>(fit_table(&samples, &Dof::TWO, &options)?.model)
     };
-    let laguerre = || Form::Laguerre {
-        filters: Some(3),
-        feed_through: FeedThrough::default(),
-        pole_per_transfer_function: false,
-    };
+    let laguerre = || Form::laguerre(3, FeedThrough::default());
     let rational = |lags, added_mass| Form::Rational { lags, added_mass };
     let given = fit(laguerre(), PoleSearch::fixed(&[0.305]))?;
     let searched = fit(laguerre(), PoleSearch::default())?;

@@ -2,8 +2,7 @@
 
 use super::flutter_figures::root_locus;
 use super::vocabulary::{
-    Axis, COLOURS, Drawing, Entry, Figure, GREY, Ink, PALE_GREY, Panel, Shape, dash,
-    outcome_colour, titled,
+    Axis, COLOURS, Drawing, Entry, Figure, GREY, Ink, PALE_GREY, Panel, Shape, dash, outcome_colour,
 };
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -54,16 +53,9 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
         }
         panels.push(panel);
     }
-    Drawing {
-        name: "modes of the bridge",
-        title: titled(title),
-        panels,
-        columns,
-        axes: (300.0, 110.0),
-        legend: vec![motion_legend()],
-    }
-    .over_one_abscissa()
-    .draw()
+    let (name, legend) = ("modes of the bridge", vec![motion_legend()]);
+    let drawing = Drawing::grid(name, title, panels, columns, [300.0, 110.0], legend);
+    drawing.over_one_abscissa().draw()
 }
 
 fn line(branch: &ModeBranch, place: impl Fn(&ModePoint) -> (f64, f64)) -> Vec<(f64, f64)> {
@@ -167,15 +159,8 @@ pub(crate) fn bridge_curves_figure(
     for panel in panels.iter_mut().skip(1) {
         panel.level = Some(0.0);
     }
-    Drawing {
-        name: "V-f and V-ζ diagram of the bridge",
-        title: titled(title),
-        panels,
-        columns: 1,
-        axes: (640.0, 220.0),
-        legend: vec![legend, stated],
-    }
-    .draw()
+    let (name, legend) = ("V-f and V-ζ diagram of the bridge", vec![legend, stated]);
+    Drawing::grid(name, title, panels, 1, [640.0, 220.0], legend).draw()
 }
 
 /// Damping ratios, per cent, of the mode that flutters in a window of speeds, with the zero line.

@@ -2,7 +2,7 @@
 
 use super::vocabulary::{
     Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Panel, PlottedSeries, Shape, colour, dash,
-    entries, labels_of, titled,
+    entries, labels_of,
 };
 use crate::error::{Error, Result};
 
@@ -65,20 +65,12 @@ pub fn derivatives_figure(
     legend.extend(entries(&measured, |i| measured_ink(i, measured.len()))?);
     legend.extend(entries(&fitted, fitted_ink)?);
     legend.extend(entries(&reference, reference_ink)?);
-    Drawing {
-        name: PLACE,
-        title: titled(title),
-        panels,
-        columns,
-        axes: if columns == 6 {
-            (150.0, 140.0)
-        } else {
-            (190.0, 160.0)
-        },
-        legend: vec![legend],
-    }
-    .over_one_abscissa()
-    .draw()
+    let axes = match columns {
+        6 => [150.0, 140.0],
+        _ => [190.0, 160.0],
+    };
+    let drawing = Drawing::grid(PLACE, title, panels, columns, axes, vec![legend]);
+    drawing.over_one_abscissa().draw()
 }
 
 const PLACE: &str = "aerodynamic derivatives";

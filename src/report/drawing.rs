@@ -15,22 +15,18 @@ const TITLE_HEIGHT: f64 = 30.0;
 const EDGE: f64 = 12.0;
 const RIGHT: f64 = 16.0;
 
-/// The line above a figure; none for an empty one.
-pub(super) fn titled(title: &str) -> Option<String> {
-    Some(shortened(title)).filter(|t| !t.is_empty())
-}
-
 /// A whole figure before it is drawn.
 #[derive(Debug)]
 pub(super) struct Drawing {
     /// Kind of figure, for messages.
     pub(super) name: &'static str,
+    /// The line above it; none for an empty one.
     pub(super) title: Option<String>,
     /// Row by row.
     pub(super) panels: Vec<Panel>,
     pub(super) columns: usize,
     /// Size of the axes of one panel, px.
-    pub(super) axes: (f64, f64),
+    pub(super) axes: [f64; 2],
     /// Groups of entries; each starts a new row.
     pub(super) legend: Vec<Vec<Entry>>,
 }
@@ -44,15 +40,27 @@ impl Drawing {
         height: f64,
         legend: Vec<Vec<Entry>>,
     ) -> Result<Figure> {
-        let drawing = Self {
-            name,
-            title: titled(title),
-            panels,
-            columns: 1,
-            axes: (640.0, height),
-            legend,
-        };
+        let drawing = Self::grid(name, title, panels, 1, [640.0, height], legend);
         drawing.over_one_abscissa().draw()
+    }
+
+    /// Panels row by row, each with an abscissa of its own.
+    pub(super) fn grid(
+        name: &'static str,
+        title: &str,
+        panels: Vec<Panel>,
+        columns: usize,
+        axes: [f64; 2],
+        legend: Vec<Vec<Entry>>,
+    ) -> Self {
+        Self {
+            name,
+            title: Some(shortened(title)).filter(|t| !t.is_empty()),
+            panels,
+            columns,
+            axes,
+            legend,
+        }
     }
 
     /// The abscissa of all panels is named under the lowest of each column alone.
@@ -129,7 +137,7 @@ impl Drawing {
         let left = widest(&self.panels) + line + if y_label { line + 16.0 } else { 4.0 };
         let columns = self.columns as f64;
         let outside = left + EDGE;
-        let wanted = columns * (self.axes.0 + left + RIGHT);
+        let wanted = columns * (self.axes[0] + left + RIGHT);
         let legend = lay_out(&self.legend, wanted - outside);
         let title = self
             .title
@@ -149,7 +157,7 @@ impl Drawing {
             left,
             top,
             right: width - RIGHT,
-            bottom: top + self.axes.1,
+            bottom: top + self.axes[1],
         };
         (axes, axes.bottom + if named { ROOM_BELOW } else { 28.0 })
     }

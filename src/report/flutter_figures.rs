@@ -9,6 +9,7 @@ use super::vocabulary::{
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModeBranch, ModePoint, Onset, OnsetMethod};
 use crate::verdict::{Outcome, Verdict};
+use std::ops::Range;
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
 ///
@@ -238,17 +239,28 @@ const BAR_WIDTH: f64 = 3.5;
 
 /// The stretches of a line in the window around zero, with the points on either side that lead out of it.
 fn near_zero(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
-    let inside = |y: f64| y.abs() <= 2.0 * NEAR_ZERO_PERCENT.1;
-    let mut all = Vec::new();
-    let mut from = 0;
-    for run in points.chunk_by(|a, b| inside(a.1) == inside(b.1)) {
-        let to = from + run.len();
-        if inside(run[0].1) {
-            all.push(points[from.saturating_sub(1)..points.len().min(to + 1)].to_vec());
-        }
-        from = to;
-    }
-    all
+    let inside = |p: &(f64, f64)| p.1.abs() <= 2.0 * NEAR_ZERO_PERCENT.1;
+    let near = stretches(points, inside).filter(|(_, inside)| *inside);
+    near.map(|(at, _)| joined(points, at).to_vec()).collect()
+}
+
+/// Stretches of points that are such or not, by their places.
+fn stretches<T>(
+    points: &[T],
+    is_such: impl Fn(&T) -> bool + Copy,
+) -> impl Iterator<Item = (Range<usize>, bool)> {
+    let mut to = 0;
+    let runs = points.chunk_by(move |a, b| is_such(a) == is_such(b));
+    runs.map(move |run| {
+        let from = to;
+        to += run.len();
+        (from..to, is_such(&run[0]))
+    })
+}
+
+/// A stretch with the points on either side.
+fn joined<T>(points: &[T], at: Range<usize>) -> &[T] {
+    &points[at.start.saturating_sub(1)..points.len().min(at.end + 1)]
 }
 
 /// Names of the branches of all models, each once, in the order of their first appearance.
@@ -267,20 +279,13 @@ fn runs(points: &[ModePoint]) -> Vec<(bool, &[ModePoint])> {
         return vec![(false, points)];
     }
     let outside = |p: &ModePoint| p.in_tested_range == Some(false);
-    let (mut pale, mut full) = (Vec::new(), Vec::new());
-    let mut from = 0;
-    for run in points.chunk_by(|a, b| outside(a) == outside(b)) {
-        let to = from + run.len();
-        if outside(&run[0]) {
-            let joined = from.saturating_sub(1)..points.len().min(to + 1);
-            pale.push((true, &points[joined]));
-        } else {
-            full.push((false, run));
-        }
-        from = to;
-    }
-    pale.extend(full);
-    pale
+    let run = |(at, outside): (Range<usize>, bool)| match outside {
+        true => (true, joined(points, at)),
+        false => (false, &points[at]),
+    };
+    let mut all: Vec<_> = stretches(points, outside).map(run).collect();
+    all.sort_by_key(|(outside, _)| !outside);
+    all
 }
 
 fn points(modes: &[ModePoint], value: impl Fn(&ModePoint) -> f64) -> Vec<(f64, f64)> {

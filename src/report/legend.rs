@@ -4,6 +4,7 @@ use super::font::text_width;
 use super::scene::{Px, Scene};
 use super::style::{BLACK, Ink};
 use crate::error::Result;
+use std::collections::HashSet;
 
 const SIZE: u32 = 11;
 const ROW: f64 = 18.0;
@@ -140,13 +141,8 @@ pub(super) fn labels_of<'a>(series: impl IntoIterator<Item = &'a PlottedSeries>)
 
 /// The names, each once, in the order of their first appearance.
 pub(super) fn distinct<'a>(all: impl IntoIterator<Item = &'a String>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for name in all {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
-    names
+    let (all, mut known) = (all.into_iter(), HashSet::new());
+    all.filter(|name| known.insert(*name)).cloned().collect()
 }
 
 /// Place of a name among `names`; 0 for one that is not there.

@@ -72,7 +72,7 @@ pub(crate) fn processing_figure(
         title: Some(format!("{}: {force_name}, stage by stage", run.run)),
         panels,
         columns: 2,
-        axes: (400.0, 84.0),
+        axes: [400.0, 84.0],
         legend: vec![legend],
     }
     .draw()

@@ -35,7 +35,7 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
         title: Some(format!("{model}: {samples} random sections, {counts}")),
         panels: vec![share, distribution],
         columns: 1,
-        axes: (640.0, 210.0),
+        axes: [640.0, 210.0],
         legend: vec![legend],
     }
     .draw()

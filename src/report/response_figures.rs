@@ -2,7 +2,7 @@
 
 use super::vocabulary::{
     Axis, COLOURS, Drawing, Figure, Ink, Panel, PlottedSeries, Shape, colour, dash, entries,
-    labels_of, titled,
+    labels_of,
 };
 use crate::error::Result;
 
@@ -13,6 +13,19 @@ pub struct TimePanel {
     pub y_label: String,
     /// Time (s) and value; series of the same label in several panels share colour and legend entry.
     pub series: Vec<PlottedSeries>,
+}
+
+impl TimePanel {
+    /// Histories with this name of the ordinate.
+    pub fn new(
+        y_label: impl Into<String>,
+        series: impl IntoIterator<Item = PlottedSeries>,
+    ) -> Self {
+        Self {
+            y_label: y_label.into(),
+            series: series.into_iter().collect(),
+        }
+    }
 }
 
 /// Histories over time, one panel below the other with the time axis `t_label` in common.
@@ -42,8 +55,7 @@ pub(crate) fn scaled_history_figure(
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     // few distinct lines may lie exactly on each other: later ones are dashed, so that the first shows through
     let ink = |i: usize| -> Result<Ink> { Ok(Ink::stroke(colour(PLACE, i)?, dash(i), 1.3)) };
-    let mut drawn = Vec::with_capacity(panels.len());
-    for panel in panels {
+    let draw = |panel: &TimePanel| {
         let mut drawing = Panel::new(Axis::new(t_label).tight(), Axis::new(&panel.y_label));
         drawing.level = Some(0.0);
         if scale < panel.series.len() {
@@ -52,8 +64,9 @@ pub(crate) fn scaled_history_figure(
             drawing.y.within = Some((-greatest, greatest));
         }
         drawing.add_labelled(&panel.series, &labels, ink)?;
-        drawn.push(drawing);
-    }
+        Ok(drawing)
+    };
+    let drawn = panels.iter().map(draw).collect::<Result<_>>()?;
     Drawing::stacked(PLACE, title, drawn, 170.0, vec![entries(&labels, ink)?])
 }
 
@@ -61,7 +74,7 @@ pub(crate) fn scaled_history_figure(
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data, numbers that are not finite, and more labels than colours.
-pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel], columns: usize) -> Result<Figure> {
+pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel]) -> Result<Figure> {
     const PLACE: &str = "metrics";
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     let line = |i: usize| Ink::nth(PLACE, i);
@@ -76,16 +89,9 @@ pub(crate) fn metrics_figure(title: &str, panels: &[TimePanel], columns: usize) 
         drawing.add_labelled(&panel.series, &labels, dots)?;
         drawn.push(drawing);
     }
-    Drawing {
-        name: PLACE,
-        title: titled(title),
-        panels: drawn,
-        columns: columns.max(1),
-        axes: (230.0, 160.0),
-        legend: vec![entries(&labels, line)?],
-    }
-    .over_one_abscissa()
-    .draw()
+    let (axes, legend) = ([230.0, 160.0], vec![entries(&labels, line)?]);
+    let drawing = Drawing::grid(PLACE, title, drawn, 3, axes, legend);
+    drawing.over_one_abscissa().draw()
 }
 
 const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Square, Shape::Diamond, Shape::Cross];
@@ -105,16 +111,11 @@ pub struct GrowthPanel {
     pub expected: Vec<(f64, f64)>,
 }
 
-/// Panels of cost over size, `columns` beside each other, with `y_label` in common.
+/// Panels of cost over size, three beside each other, with `y_label` in common.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data and numbers that are not finite.
-pub fn growth_figure(
-    title: &str,
-    panels: &[GrowthPanel],
-    y_label: &str,
-    columns: usize,
-) -> Result<Figure> {
+pub fn growth_figure(title: &str, panels: &[GrowthPanel], y_label: &str) -> Result<Figure> {
     let logarithmic = |label: &str| Axis::new(label).logarithmic();
     let inks = [
         Ink::dots(COLOURS[0], Shape::Circle),
@@ -133,13 +134,7 @@ pub fn growth_figure(
         }
         drawing
     });
-    Drawing {
-        name: "cost over size",
-        title: titled(title),
-        panels: drawn.collect(),
-        columns,
-        axes: (230.0, 150.0),
-        legend: vec![entries(&labels, |i| Ok(inks[i]))?],
-    }
-    .draw()
+    let (panels, legend) = (drawn.collect(), vec![entries(&labels, |i| Ok(inks[i]))?]);
+    let axes = [230.0, 150.0];
+    Drawing::grid("cost over size", title, panels, 3, axes, legend).draw()
 }

@@ -86,8 +86,10 @@ pub struct Figure {
 }
 
 impl Figure {
-    pub(super) fn from_svg(svg: String) -> Self {
-        Self { svg }
+    /// That of a file, without what only a file of its own needs; none where there is no drawing in it.
+    pub(crate) fn of_file(text: &str) -> Option<Self> {
+        let svg = text[text.find("<svg")?..].to_owned();
+        Some(Self { svg })
     }
 
     /// The SVG text: one `svg` element with a `viewBox`, ready to stand in a page; its identifiers are its own, so that
@@ -257,11 +259,12 @@ impl Scene {
         let own = Uuid::new_v5(&Uuid::NAMESPACE_OID, self.body.as_bytes()).simple();
         let body = self.body.replace(CLIP, &format!("fig-{own}-"));
         let (width, height) = (self.width, self.height);
-        Figure::from_svg(format!(
+        let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
              role=\"img\" font-family=\"{FAMILIES}\" fill=\"{BLACK}\">\n\
              <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{body}</svg>\n"
-        ))
+        );
+        Figure { svg }
     }
 }
 

@@ -1,6 +1,7 @@
 //! A page of sections with tables and figures: the reports of a laboratory and of the thesis.
 
 use super::page_head::{at_edges, capital, class, doubts, stated};
+use super::vocabulary::Figure;
 use crate::files::report_block::ReportBlock;
 use crate::verdict::{Severity, Verdict};
 use askama::Template;
@@ -39,8 +40,20 @@ pub(crate) struct PageSection {
     /// Heads of its columns, ` | ` between them.
     pub(crate) header: &'static str,
     pub(crate) rows: Vec<Vec<String>>,
-    /// Caption and SVG.
-    pub(crate) figures: Vec<(String, String)>,
+    /// With their captions.
+    pub(crate) figures: Vec<(String, Figure)>,
+}
+
+impl PageSection {
+    /// One of a table alone.
+    pub(crate) fn table(title: &str, header: &'static str, rows: Vec<Vec<String>>) -> Self {
+        Self {
+            title: title.to_owned(),
+            header,
+            rows,
+            ..Self::default()
+        }
+    }
 }
 
 const GENERATOR: &str = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));

@@ -3,7 +3,7 @@
 use super::axes_sketch::axes_sketch;
 use super::page_head::{at_edges, capital, class, doubts, required_colour, stated};
 use super::sections_page::PageSection;
-use super::vocabulary::{COLOURS, branch_width, dash};
+use super::vocabulary::{COLOURS, Figure, branch_width, dash};
 use crate::files::report_block::ReportBlock;
 use crate::identification::{EntryReport, FitReport};
 use crate::units::ReducedFrequency;
@@ -21,7 +21,7 @@ const UPLOT_CSS: &str = include_str!("../../templates/uplot/uPlot.min.css");
 pub(crate) struct PageFigure {
     pub(crate) title: String,
     pub(crate) caption: &'static str,
-    pub(crate) svg: String,
+    pub(crate) figure: Figure,
 }
 
 /// A curve whose values are shown under the cursor; `None` where it is not known.
@@ -60,8 +60,8 @@ pub(crate) struct StudyPage {
     pub(crate) comparisons: Vec<String>,
     /// Further tables of the answer.
     pub(crate) sections: Vec<PageSection>,
-    /// Frequency and damping of the answer, as SVG; empty without curves.
-    pub(crate) summary: String,
+    /// Frequency and damping of the answer; none without curves.
+    pub(crate) summary: Option<Figure>,
     /// The figure of derivatives in the summary.
     pub(crate) derivatives: Option<PageFigure>,
     pub(crate) figures: Vec<PageFigure>,

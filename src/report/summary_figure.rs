@@ -37,14 +37,8 @@ pub(crate) fn summary_figure(of: &StudyPage) -> Result<Option<Figure>> {
         return Ok(None);
     }
     let marks = marks(of, [&mut frequency, &mut damping]);
-    let drawing = Drawing {
-        name: "summary",
-        title: None,
-        panels: vec![frequency, damping],
-        columns: 2,
-        axes: (300.0, 210.0),
-        legend: vec![modes, marks],
-    };
+    let (panels, legend) = (vec![frequency, damping], vec![modes, marks]);
+    let drawing = Drawing::grid("summary", "", panels, 2, [300.0, 210.0], legend);
     drawing.draw().map(Some)
 }
 

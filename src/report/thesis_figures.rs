@@ -31,10 +31,7 @@ pub fn laguerre_figures(functions: &[Lines; 6]) -> Result<Vec<(&'static str, Fig
     let one = |([number, title, y_label, x_label], lines): ([&'static str; 4], &Lines)| {
         let series = lines.iter();
         let series = series.map(|(label, points)| PlottedSeries::new(label, points.clone()));
-        let panel = TimePanel {
-            y_label: y_label.to_owned(),
-            series: series.collect(),
-        };
+        let panel = TimePanel::new(y_label, series);
         Ok((number, time_history_figure(title, &[panel], x_label)?))
     };
     FIGURES.into_iter().zip(functions).map(one).collect()
@@ -49,10 +46,7 @@ pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static 
         PlottedSeries::new(*label, points.collect())
     };
     let history = |title: &str, label: &str, signals: &[(&str, &Vec<f64>)]| {
-        let panel = TimePanel {
-            y_label: label.to_owned(),
-            series: signals.iter().map(over_time).collect(),
-        };
+        let panel = TimePanel::new(label, signals.iter().map(over_time));
         time_history_figure(title, &[panel], "Time (s)")
     };
     let order = format!("L = {}", FILTERS);
@@ -71,10 +65,11 @@ pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static 
         "h Δt (–)",
         &[("system", impulse), ("Laguerre model", filters)],
     )?;
-    let both = transfer(results, &parameters, [&results.tustin, &results.model])?;
-    let alphas = transfer(results, &order, &results.by_alpha)?;
+    let system = &results.system;
+    let both = transfer(system, &parameters, [&results.tustin, &results.model])?;
+    let alphas = transfer(system, &order, &results.by_alpha)?;
     let one_alpha = format!("α = {}", ALPHA_OF_ORDERS);
-    let orders = transfer(results, &one_alpha, &results.by_order)?;
+    let orders = transfer(system, &one_alpha, &results.by_order)?;
     Ok(vec![
         ("2.6", input),
         ("2.7", output),
@@ -86,29 +81,19 @@ pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static 
 }
 
 fn transfer<'a>(
-    results: &FirstOrderResults,
+    system: &SampledTransfer,
     parameters: &str,
     models: impl IntoIterator<Item = &'a SampledTransfer>,
 ) -> Result<Figure> {
     let curve = |t: &SampledTransfer| TransferCurve {
         model: t.label.clone(),
-        points: results
-            .frequencies_hz
-            .iter()
-            .zip(t.magnitude.iter().zip(&t.phase_deg))
-            .map(|(f, (m, p))| (*f, *m, *p))
-            .collect(),
+        points: t.points.clone(),
     };
     let plot = TransferPlot {
         name: "1/(τs + 1)".into(),
-        reference: curve(&results.system),
-        reference_is_points: false,
+        reference: curve(system),
         tolerance: None,
         models: models.into_iter().map(curve).collect(),
     };
-    transfer_figure(
-        &format!("Transfer functions, {parameters}"),
-        "Frequency (Hz)",
-        &[plot],
-    )
+    transfer_figure(&format!("Transfer functions, {parameters}"), &[plot])
 }

@@ -2,7 +2,6 @@
 
 use super::vocabulary::{
     Axis, BLACK, Drawing, Entry, Figure, GREY, Ink, Panel, Shape, distinct, entries, index_of,
-    titled,
 };
 use crate::comparison::forces::PerModel;
 use crate::error::Result;
@@ -17,9 +16,7 @@ pub(crate) struct TransferPlot {
     pub name: String,
     /// What the models are compared with.
     pub reference: TransferCurve,
-    /// Whether the reference is a few test points rather than a line.
-    pub reference_is_points: bool,
-    /// Band around the reference, as a part of its magnitude and in degrees.
+    /// Band around a reference of a few test points, as a part of its magnitude and in degrees; none around one that is a line.
     pub tolerance: Option<(f64, f64)>,
     /// The models.
     pub models: Vec<TransferCurve>,
@@ -31,18 +28,14 @@ pub(crate) struct TransferPlot {
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data, numbers that are not finite, and more models than colours.
-pub(crate) fn transfer_figure(
-    title: &str,
-    x_label: &str,
-    plots: &[TransferPlot],
-) -> Result<Figure> {
+pub(crate) fn transfer_figure(title: &str, plots: &[TransferPlot]) -> Result<Figure> {
     const PLACE: &str = "transfer functions";
     let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.model));
     let ink = |i: usize| Ink::nth(PLACE, i);
     let mut panels = Vec::with_capacity(2 * plots.len());
     for plot in plots {
         for phase in [false, true] {
-            let mut panel = reference_panel(plot, phase, x_label);
+            let mut panel = reference_panel(plot, phase);
             for curve in &plot.models {
                 let points = points(curve, phase);
                 panel.add(&curve.model, points, ink(index_of(&labels, &curve.model))?);
@@ -59,26 +52,19 @@ pub(crate) fn transfer_figure(
         }
     }
     legend.extend(entries(&labels, ink)?);
-    Drawing {
-        name: PLACE,
-        title: titled(title),
-        panels,
-        columns: 2,
-        axes: (330.0, if plots.len() > 2 { 150.0 } else { 240.0 }),
-        legend: vec![legend],
-    }
-    .over_one_abscissa()
-    .draw()
+    let axes = [330.0, if plots.len() > 2 { 150.0 } else { 240.0 }];
+    let drawing = Drawing::grid(PLACE, title, panels, 2, axes, vec![legend]);
+    drawing.over_one_abscissa().draw()
 }
 
 /// A panel of magnitudes or phases with the reference and the band around it.
-fn reference_panel(plot: &TransferPlot, phase: bool, x_label: &str) -> Panel {
+fn reference_panel(plot: &TransferPlot, phase: bool) -> Panel {
     let y = if phase {
         "Phase (°)"
     } else {
         "Magnitude (–)"
     };
-    let mut panel = Panel::new(Axis::new(x_label).tight(), Axis::new(y));
+    let mut panel = Panel::new(Axis::new("Frequency (Hz)").tight(), Axis::new(y));
     panel.title = Some(plot.name.clone());
     for (band, points) in bands(plot, phase) {
         panel.add(band, points, BAND);
@@ -96,9 +82,9 @@ fn points(curve: &TransferCurve, phase: bool) -> Vec<(f64, f64)> {
 const BAND: Ink = Ink::stroke(GREY, Some("4 3"), 0.9);
 
 fn reference_ink(plot: &TransferPlot) -> Ink {
-    match plot.reference_is_points {
-        true => Ink::dots(BLACK, Shape::Circle),
-        false => Ink::solid(BLACK, 2.6),
+    match plot.tolerance {
+        Some(_) => Ink::dots(BLACK, Shape::Circle),
+        None => Ink::solid(BLACK, 2.6),
     }
 }
 

@@ -29,8 +29,7 @@ pub(crate) fn equilibrium_figure(
 ) -> Result<Figure> {
     const PLACE: &str = "static equilibrium";
     let line = Ink::nth(PLACE, 0)?;
-    let mut panels = Vec::with_capacity(dofs.len());
-    for (i, dof) in dofs.iter().enumerate() {
+    let panel = |(i, dof): (usize, &Dof)| {
         let (label, factor) = ordinate(*dof, "");
         let speed = Axis::new("Wind speed V (m/s)").tight();
         let mut panel = Panel::new(speed, Axis::new(label));
@@ -38,11 +37,11 @@ pub(crate) fn equilibrium_figure(
         let points = path.points.iter();
         let points = points.map(|p| (p.speed_m_s, factor * p.displacement[i]));
         panel.add(dof.name(), points.collect(), line);
-        if let Some(end) = &path.end {
-            panel.uprights.push((end.speed_m_s(), BLACK));
-        }
-        panels.push(panel);
-    }
+        let end = path.end.iter().map(|end| (end.speed_m_s(), BLACK));
+        panel.uprights.extend(end);
+        panel
+    };
+    let panels = dofs.iter().enumerate().map(panel).collect();
     let mut legend = vec![Entry::new("static equilibrium", line)];
     if let Some(end) = &path.end {
         let upright = Ink::stroke(BLACK, Some("3 3"), 0.9);

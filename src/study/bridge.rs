@@ -9,14 +9,11 @@ mod forces;
 mod interval;
 mod motion;
 mod parts;
-mod scaled_forces;
 mod scatter;
 mod similarity;
 
 pub(crate) use answers::NAMED_SHARE;
-pub use answers::{
-    BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
-};
+pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, TableDivergence, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BuffetingBlock, ModelsBesideTables};
 pub use envelope::{SectionForceResponse, SpanEnvelope};
 pub use export::BridgeExportOptions;
@@ -164,10 +161,10 @@ impl BridgeStudy {
 
     /// Where an onset is searched.
     pub fn search(&self) -> OnsetSearch {
-        OnsetSearch {
-            speed_max_m_s: reaching(self.file.flutter.speed_max_m_s, self.required()),
-            speeds: self.file.flutter.speeds.max(SEARCHED_AT_LEAST),
-        }
+        OnsetSearch::new(
+            reaching(self.file.flutter.speed_max_m_s, self.required()),
+            self.file.flutter.speeds.max(SEARCHED_AT_LEAST),
+        )
     }
 
     /// Reduced frequencies, of the bridge, in which the forces of every section were tested.

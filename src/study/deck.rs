@@ -184,12 +184,9 @@ impl Deck {
             if groups.is_none() {
                 return Ok(table.samples(&self.dofs));
             }
-            let mut samples = Vec::new();
-            for group in chosen(groups, table.speed_groups().len().max(1))? {
-                let part = table.at_speed_group(group)?;
-                samples.extend(part.samples(&self.dofs));
-            }
-            return Ok(samples);
+            let groups = chosen(groups, table.speed_groups().len().max(1))?.into_iter();
+            let parts = groups.map(|group| Ok(table.at_speed_group(group)?.samples(&self.dofs)));
+            return Ok(parts.collect::<Result<Vec<_>>>()?.concat());
         }
         // groups are numbered from the lowest speed, as those of tables and records
         let mut speeds = study.tunnel.speeds_m_s.clone();

@@ -232,7 +232,7 @@ pub(super) fn add_coefficients(
         let path = static_equilibria(structure, theory, &[speed])?;
         evidence.mean_rotation = path.points.first().map(|p| MeanRotation {
             speed_m_s: speed,
-            at_onset_deg: p.rotation_rad.to_degrees(),
+            rotation_deg: p.rotation_rad.to_degrees(),
             tested_deg,
         });
     }

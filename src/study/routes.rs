@@ -8,7 +8,7 @@
 mod limit;
 mod steady;
 
-use super::{Deck, Study};
+use super::{Deck, SpeedRange, Study};
 use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -93,6 +93,7 @@ struct Forces<'a> {
     name: String,
     model: &'a dyn Transfer,
     structure: &'a Structure,
+    speeds: &'a SpeedRange,
     tested: Option<ReducedFrequencyRange>,
     /// Divergence, m/s.
     divergence_m_s: Option<f64>,
@@ -107,7 +108,7 @@ pub(crate) fn route_table(
     deck: &Deck,
     trained: &[TrainedModel],
 ) -> Result<RouteTable> {
-    let structure = study.section.structure()?;
+    let (structure, speeds) = (study.section.structure()?, &study.speeds());
     let mut table = RouteTable {
         routes: Vec::new(),
         sanity: sanity_lines(&structure),
@@ -116,18 +117,18 @@ pub(crate) fn route_table(
         left_out: Vec::new(),
     };
     for model in trained {
-        let added = table.add_trained(study, &structure, model);
+        let added = table.add_trained(speeds, &structure, model);
         table.note_failure(&model.name, None, added);
     }
-    let added = table.add_deck(study, deck, &structure);
+    let added = table.add_deck(speeds, deck, &structure);
     table.note_failure(&deck.own_model_name(), None, added);
     if deck.table().is_some() {
-        let added = table.add_flat_plate(study, &structure);
+        let added = table.add_flat_plate(speeds, &structure);
         table.note_failure(FLAT_PLATE, None, added);
     }
     if let Some(block) = &study.coefficients {
         let theory = block.theory(&study.directory, &study.section.dofs())?;
-        let added = table.add_static_coefficients(study, &structure, &theory);
+        let added = table.add_static_coefficients(speeds, &structure, &theory);
         table.note_failure(THEORY, None, added);
     }
     if table.sanity.is_none() {
@@ -161,12 +162,11 @@ impl RouteTable {
     /// The route of what a search found, if it found an answer.
     fn answered(
         &mut self,
-        study: &Study,
         forces: &Forces<'_>,
         method: OnsetMethod,
         found: Result<FlutterSearch>,
     ) -> Option<Route> {
-        let route = found.and_then(|search| forces.route(study, method, search));
+        let route = found.and_then(|search| forces.route(method, search));
         self.note_failure(&forces.name, Some(method), route)
     }
 
@@ -187,47 +187,46 @@ impl RouteTable {
 
     fn add_trained(
         &mut self,
-        study: &Study,
+        speeds: &SpeedRange,
         structure: &Structure,
         model: &TrainedModel,
     ) -> Result<()> {
         let section = CoupledSection::with_model(structure, &model.model)?;
-        let search = study.speeds().search();
         let k = ReducedFrequency::from_full_width(NEARLY_STEADY);
         let limit = low_frequency_limit(&model.model, k)?;
         let forces = Forces {
             name: model.name.clone(),
             model: &model.model,
             structure,
+            speeds,
             tested: Some(model.tested_range),
             divergence_m_s: divergence_with_forces(structure, &model.model)?,
-            quasi_steady_m_s: limit_onset(study, structure, &limit)?,
+            quasi_steady_m_s: limit_onset(speeds, structure, &limit)?,
         };
-        let found = find_onset(&model.name, &section, &search, forces.tested);
-        if let Some(mut route) = self.answered(study, &forces, OnsetMethod::Eigenvalues, found) {
-            let highest = study.speeds().searched_to_m_s.max(beyond(&forces));
+        let found = find_onset(&model.name, &section, &speeds.search(), forces.tested);
+        if let Some(mut route) = self.answered(&forces, OnsetMethod::Eigenvalues, found) {
+            let highest = speeds.searched_to_m_s.max(beyond(&forces));
             route.divergence_m_s = divergence_by_eigenvalues(&section, highest)?;
             self.routes.push(route);
         }
-        let speeds = study.speeds().curve_speeds_m_s();
-        self.draw(&forces, trace_modes(&model.name, &section, &speeds));
+        let curves = trace_modes(&model.name, &section, &speeds.curve_speeds_m_s());
+        self.draw(&forces, curves);
         let sampled = matches!(model.model.realize(), Realization::Discrete(_));
-        self.add_transfer_routes(study, &forces, sampled);
+        self.add_transfer_routes(&forces, sampled);
         Ok(())
     }
 
     /// Determinant and p-k iteration on one `G(K)`.
-    fn add_transfer_routes(&mut self, study: &Study, forces: &Forces<'_>, sampled: bool) {
-        let speed_max = study.speeds().searched_to_m_s;
+    fn add_transfer_routes(&mut self, forces: &Forces<'_>, sampled: bool) {
         let (name, s, model) = (&forces.name, forces.structure, forces.model);
-        let inside = determinant_onset(name, s, model, forces.range(), speed_max);
-        let search = study.speeds().search();
+        let search = forces.speeds.search();
+        let inside = determinant_onset(name, s, model, forces.range(), search.speed_max_m_s);
         let iterated = pk_onset(name, s, model, &search, forces.tested);
         for (method, found) in [
             (OnsetMethod::Determinant, inside),
             (OnsetMethod::PkIteration, iterated),
         ] {
-            let Some(mut route) = self.answered(study, forces, method, found) else {
+            let Some(mut route) = self.answered(forces, method, found) else {
                 continue;
             };
             if sampled {
@@ -239,7 +238,7 @@ impl RouteTable {
         }
     }
 
-    fn add_deck(&mut self, study: &Study, deck: &Deck, structure: &Structure) -> Result<()> {
+    fn add_deck(&mut self, speeds: &SpeedRange, deck: &Deck, structure: &Structure) -> Result<()> {
         let (model, tested) = deck.model()?;
         let still = ReducedFrequency::from_full_width(NEARLY_STEADY);
         let steady_k = tested.map_or(still, |range| range.min);
@@ -256,13 +255,14 @@ impl RouteTable {
             name: deck.own_model_name(),
             model: model.as_ref(),
             structure,
+            speeds,
             tested,
             divergence_m_s: divergence_speed(structure, &static_transfer)?,
-            quasi_steady_m_s: limit_onset(study, structure, &limit)?,
+            quasi_steady_m_s: limit_onset(speeds, structure, &limit)?,
         };
         let from = self.routes.len();
-        self.add_transfer_routes(study, &forces, false);
-        let own = deck.own_onset(structure, study.speeds().searched_to_m_s);
+        self.add_transfer_routes(&forces, false);
+        let own = deck.own_onset(structure, speeds.searched_to_m_s);
         let own = own.as_ref().ok().and_then(FlutterSearch::onset);
         for route in &mut self.routes[from..] {
             if let (FlutterSearch::Onset(onset), Some(own)) = (&mut route.search, own) {
@@ -271,33 +271,34 @@ impl RouteTable {
             let assumed = assumed.map(|a| format!("divergence: {}", a.explain()));
             route.warnings.extend(assumed);
         }
-        let speeds = study.speeds().curve_speeds_m_s();
-        let curves = pk_curves(&forces.name, structure, model.as_ref(), &speeds);
+        let of_curves = speeds.curve_speeds_m_s();
+        let curves = pk_curves(&forces.name, structure, model.as_ref(), &of_curves);
         self.draw(&forces, curves);
-        self.add_quasi_steady(study, structure, &limit, tested.map(|range| range.min))
+        self.add_quasi_steady(speeds, structure, &limit, tested.map(|range| range.min))
     }
 
-    fn add_flat_plate(&mut self, study: &Study, structure: &Structure) -> Result<()> {
+    fn add_flat_plate(&mut self, speeds: &SpeedRange, structure: &Structure) -> Result<()> {
         let two = structure.only(&Dof::TWO);
         let plate = FlatPlate::default();
         let forces = Forces {
             name: FLAT_PLATE.into(),
             model: &plate,
             structure: &two,
+            speeds,
             tested: None,
             divergence_m_s: divergence_with_forces(&two, &plate)?,
-            quasi_steady_m_s: limit_onset(study, &two, &steady_flat_plate())?,
+            quasi_steady_m_s: limit_onset(speeds, &two, &steady_flat_plate())?,
         };
         let from = self.routes.len();
-        self.add_transfer_routes(study, &forces, false);
+        self.add_transfer_routes(&forces, false);
         if structure.dofs.len() > two.dofs.len() {
             for route in &mut self.routes[from..] {
                 let text = "heave and rotation only: a plate has no drag";
                 route.warnings.push(text.to_owned());
             }
         }
-        let speeds = study.speeds().curve_speeds_m_s();
-        self.draw(&forces, pk_curves(FLAT_PLATE, &two, &plate, &speeds));
+        let curves = pk_curves(FLAT_PLATE, &two, &plate, &speeds.curve_speeds_m_s());
+        self.draw(&forces, curves);
         Ok(())
     }
 }
@@ -316,12 +317,7 @@ impl Forces<'_> {
         ))
     }
 
-    fn route(
-        &self,
-        study: &Study,
-        method: OnsetMethod,
-        mut search: FlutterSearch,
-    ) -> Result<Route> {
+    fn route(&self, method: OnsetMethod, mut search: FlutterSearch) -> Result<Route> {
         // exact at every K: there is no tested range to leave
         match (&mut search, self.tested) {
             (FlutterSearch::Onset(onset), None) => onset.in_tested_range = None,
@@ -329,7 +325,7 @@ impl Forces<'_> {
             _ => {}
         }
         let onset = search.onset();
-        let speed_max = study.speeds().searched_to_m_s;
+        let speed_max = self.speeds.searched_to_m_s;
         let mode = onset
             .map(|o| classify(self.structure, self.model, o, self.range(), speed_max))
             .transpose()?;

@@ -123,10 +123,7 @@ impl FlutterBlock {
 impl SpeedRange {
     /// The search, in which crossings are seen whatever is drawn.
     pub fn search(&self) -> OnsetSearch {
-        OnsetSearch {
-            speed_max_m_s: self.searched_to_m_s,
-            speeds: self.speeds.max(SEARCHED_AT_LEAST),
-        }
+        OnsetSearch::new(self.searched_to_m_s, self.speeds.max(SEARCHED_AT_LEAST))
     }
 
     /// The range in words.

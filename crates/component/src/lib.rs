@@ -19,15 +19,13 @@ use interfaces::fmi::fmi3::types::{
 use std::ffi::{CStr, CString, c_char};
 use std::ptr::null_mut;
 
-struct Exports;
-
-impl common::Guest for Exports {
+impl common::Guest for Handle {
     fn get_version() -> String {
         "3.0".to_owned()
     }
 }
 
-impl co_simulation::Guest for Exports {
+impl co_simulation::Guest for Handle {
     type CoSimulationInstance = Handle;
 }
 
@@ -390,4 +388,4 @@ impl co_simulation::GuestCoSimulationInstance for Handle {
     }
 }
 
-interfaces::export!(Exports with_types_in interfaces);
+interfaces::export!(Handle with_types_in interfaces);

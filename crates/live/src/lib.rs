@@ -80,10 +80,7 @@ fn answer_of(request: &str) -> Result<FlutterAnswer> {
     let trained = TrainedModel::from_json(&request.model)?;
     let structure = request.section.structure()?;
     let section = CoupledSection::with_model(&structure, &trained.model)?;
-    let search = OnsetSearch {
-        speed_max_m_s: request.speed_max_m_s,
-        speeds: request.speeds,
-    };
+    let search = OnsetSearch::new(request.speed_max_m_s, request.speeds);
     let tested = Some(trained.tested_range);
     let found = find_onset(&trained.name, &section, &search, tested)?;
     let (low, high) = (request.speed_min_m_s, request.speed_max_m_s);

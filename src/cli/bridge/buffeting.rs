@@ -5,14 +5,12 @@ use super::files::{BUFFETING_PAGE, BridgeArgs};
 use super::flutter::renew;
 use crate::buffeting::TurbulenceField;
 use crate::cli::headline;
-use crate::cli::vocabulary::{Answer, Progress, TextTable, warn};
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{
+    Answer, BridgeStudy, Error, Finding, Progress, Result, TextTable, Verdict, csv_cell, rendered,
+    sentences, warn,
+};
 use crate::files::bridge::read_field;
-use crate::files::text::csv_cell;
-use crate::plausibility::{Finding, sentences};
-use crate::report::rendered;
-use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
-use crate::verdict::Verdict;
+use crate::study::bridge::{BridgeBuffeting, BuffetingBlock};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -71,9 +69,7 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
             table(results)
         );
     }
-    for why in &unstable {
-        let _ = writeln!(text, "no answer: {why}");
-    }
+    text.extend(unstable.iter().map(|why| format!("no answer: {why}\n")));
     if args.field {
         let field = study.first_field(&block, all[0].frequency.speed_m_s)?;
         out.write("turbulence.csv", field_csv(&field))?;

@@ -1,11 +1,11 @@
 //! The page of a response to turbulence; the report of the bridge takes it up.
 
 use crate::cli::report::folder::{digest, today};
-use crate::error::{Result, counted};
-use crate::report::{PageSection, SectionsPage, buffeting_spectra_figure, envelope_figure};
-use crate::section::Dof;
-use crate::study::bridge::{BridgeBuffeting, BridgeStudy};
-use crate::verdict::Verdict;
+use crate::cli::vocabulary::{
+    BridgeStudy, Dof, PageSection, Result, SectionsPage, Verdict, counted,
+};
+use crate::report::{buffeting_spectra_figure, envelope_figure};
+use crate::study::bridge::BridgeBuffeting;
 use std::fmt::Write as _;
 
 /// Motions with their unit and the factor to it.
@@ -68,13 +68,9 @@ pub(super) fn forces(results: &BridgeBuffeting) -> String {
             text,
             "time domain: {records} of {seconds} s, every {step_s} s, seed {seed}; peaks in {peak_s} s"
         );
-        if let Some(why) = &time.too_short {
-            let _ = writeln!(text, "  {why}");
-        }
+        text.extend(time.too_short.iter().map(|why| format!("  {why}\n")));
     }
-    if let Some(why) = &results.no_time {
-        let _ = writeln!(text, "no time domain: {why}");
-    }
+    text.extend(results.no_time.iter().map(|why| format!("no time domain: {why}\n")));
     let parts = results.frequency.part_in_tested_range.iter().flatten();
     let least = parts.flatten().copied().reduce(f64::min);
     if let Some(percent) = least.map(|least| 100.0 * least) {
@@ -116,8 +112,8 @@ fn section(of: &BridgeBuffeting) -> Result<PageSection> {
         "Mean, and mean ± expected peak, along the girder.",
         "Spectra of the displacements times the frequency.",
     ];
-    let figures = captions.into_iter().zip([envelope, spectra]);
-    let figures = figures.map(|(caption, figure)| (caption.to_owned(), figure.svg().to_owned()));
+    let captions = captions.into_iter().map(str::to_owned);
+    let figures = captions.zip([envelope, spectra]);
     let of_sections = of.envelope.section_forces.iter().map(|f| {
         let peak = f.peak_factor * f.rms;
         format!(

@@ -2,10 +2,9 @@
 
 use super::summary::named;
 use crate::bridge::BridgeMode;
-use crate::cli::vocabulary::{Answer, warn};
-use crate::error::{Error, Result, counted};
+use crate::cli::vocabulary::{Answer, Error, Finding, Result, counted, sentences, warn};
 use crate::files::bridge::{BridgeFile, BridgeModes, ModesFormat, write_modes};
-use crate::plausibility::{Finding, FindingSeverity, sentences};
+use crate::plausibility::FindingSeverity;
 use std::path::{Path, PathBuf};
 
 /// Part of the girder's share in the mass of a mode by which nodes that are left out may change what the wind acts on.

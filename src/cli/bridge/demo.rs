@@ -5,15 +5,15 @@ use super::files::BRIDGE_FMU;
 use super::flutter::{computed, leave};
 use super::summary::BridgeSummary;
 use super::text::{MORE, text};
-use crate::cli::stages;
-use crate::cli::vocabulary::{Answer, OutputDir, Progress};
-use crate::error::{Error, Result};
+use crate::cli::stages::{MODEL_FILE, Stages};
+use crate::cli::vocabulary::{
+    Answer, BridgeStudy, Error, Label, OutputDir, Progress, Result, Runtime, Study, TrainedModel,
+    Verdict,
+};
 use crate::files::bridge::BridgeFile;
-use crate::fmu::package::{Label, Runtime, package};
-use crate::study::bridge::{BridgeExportOptions, BridgeFlutter, BridgeStudy, demo_bridge_text};
-use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, Study, demo_study_text};
-use crate::trained_model::TrainedModel;
-use crate::verdict::Verdict;
+use crate::fmu::package::package;
+use crate::study::bridge::{BridgeExportOptions, BridgeFlutter, demo_bridge_text};
+use crate::study::{KnownUncertainty, RecordSet, StageFailure, demo_study_text};
 use std::path::Path;
 
 const BRIDGE_FILE: &str = "bridge.toml";
@@ -27,8 +27,9 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let mut section = Study::from_toml(demo_study_text(), directory.to_path_buf())?;
     // the model of the records; the others compare forms of models, which the demo of the section does
     section.models.truncate(1);
-    let deck = Deck::load(&section)?;
-    let at_hand = trained(&section, &deck, &mut out, progress)?;
+    let mut section = Stages::new(section, out, progress)?;
+    let at_hand = trained(&mut section)?;
+    let mut out = section.out;
     let file = BridgeFile::from_toml(demo_bridge_text(), directory.to_path_buf())?;
     let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
@@ -70,23 +71,16 @@ fn packed(
 }
 
 /// The records of the virtual tunnel and the model trained on them.
-fn trained(
-    study: &Study,
-    deck: &Deck,
-    out: &mut OutputDir,
-    progress: &Progress,
-) -> Result<(TrainedModel, KnownUncertainty)> {
-    let records = RecordSet::in_memory(stages::tunnel(study, deck, out, progress)?);
-    let mut failed = Vec::new();
-    let models = stages::train(study, deck, Some(&records), out, &mut failed, progress)?;
+fn trained(section: &mut Stages<'_>) -> Result<(TrainedModel, KnownUncertainty)> {
+    let records = RecordSet::in_memory(section.tunnel()?);
+    let models = section.train(Some(&records))?;
     // the model of the section alone is not what is exported here
-    out.discard(stages::MODEL_FILE);
+    section.out.discard(MODEL_FILE);
     let first = models.into_iter().next();
     let first = first.map(|t| (t.model, t.uncertainty));
     first.ok_or_else(|| {
-        let why = failed
-            .first()
-            .map_or("no model in the study".to_owned(), StageFailure::explain);
+        let why = section.failed.first().map(StageFailure::explain);
+        let why = why.unwrap_or("no model in the study".to_owned());
         Error::Numerical(format!("no model can be trained: {why}"))
     })
 }

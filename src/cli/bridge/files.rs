@@ -1,10 +1,9 @@
 //! A bridge file on the command line, and the files that commands of a bridge leave and its page takes up.
 
-use crate::cli::vocabulary::{OutputDir, Progress, folder_of, warn};
-use crate::error::Result;
+use crate::cli::vocabulary::{
+    BridgeStudy, OutputDir, Progress, Result, folder_of, read_text, warn,
+};
 use crate::files::bridge::BridgeFile;
-use crate::files::text::read_text;
-use crate::study::bridge::BridgeStudy;
 use std::path::{Path, PathBuf};
 
 /// The FMU of a bridge.

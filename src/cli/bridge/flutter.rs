@@ -11,21 +11,18 @@ use crate::cli::report::folder::{REPORT, SUMMARY, is_of_a_study};
 use crate::cli::report::{self, page_of};
 use crate::cli::result_files::{beside_models, curves_csv, over_v_hat};
 use crate::cli::text::ending;
-use crate::cli::vocabulary::{Answer, OutputDir, Progress};
-use crate::error::Result;
-use crate::files::text::csv_cell;
+use crate::cli::vocabulary::{
+    Answer, BridgeStudy, OutputDir, PlottedSeries, Progress, Result, TimePanel, Verdict, csv_cell,
+    derivative_lines,
+};
 use crate::flutter::ModePoint;
 use crate::report::{
-    PlottedSeries, TimePanel, bridge_curves_figure, bridge_roots_figure, flutter_motion_figure,
-    scaled_history_figure,
+    bridge_curves_figure, bridge_roots_figure, flutter_motion_figure, scaled_history_figure,
 };
+use crate::study::bridge::BridgeMotion;
 use crate::study::bridge::{
-    BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
-    bridge_flutter,
+    BridgeFlutter, DerivativeScatter, Scatter, ScatteredOnset, block_table, bridge_flutter,
 };
-use crate::study::bridge::{BridgeMotion, NodeMotion};
-use crate::study::derivative_lines;
-use crate::verdict::Verdict;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -81,13 +78,9 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     let mut text = text::text(&study, &results, &verdict, progress.verbose);
     let scatter = scattered.as_ref().map(scatter_line);
-    if let Some(line) = &scatter {
-        let _ = writeln!(text, "{line}");
-    }
+    text.extend(scatter.iter().map(|line| format!("{line}\n")));
     let inputs = leave_inputs(&args.bridge.bridge, &study.file, &mut out)?;
-    for failed in &failed {
-        let _ = writeln!(text, "failed: {failed}");
-    }
+    text.extend(failed.iter().map(|failed| format!("failed: {failed}\n")));
     if is_of_a_study(&out.target(SUMMARY)) {
         text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {
@@ -331,21 +324,14 @@ fn panels(results: &BridgeFlutter) -> Option<Vec<TimePanel>> {
             });
             PlottedSeries::new(label.clone(), points.collect())
         });
-        TimePanel {
-            y_label: name.to_owned(),
-            series: series.collect(),
-        }
+        TimePanel::new(name, series)
     };
     Some(names.into_iter().enumerate().map(panel).collect())
 }
 
 /// Motion of the node that turns most, with that rotation 1° and real.
 fn displaced(motion: &BridgeMotion) -> Option<[Complex<f64>; 3]> {
-    let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
-    let turns = |n: &&NodeMotion| complex(n.motion[2]).norm();
-    let nodes = motion.nodes.iter();
-    let most = nodes.max_by(|a, b| turns(a).total_cmp(&turns(b)))?;
-    let [y, x, theta] = most.motion.map(complex);
+    let [y, x, theta] = motion.turning_most()?;
     let unit = theta / RELEASED_DEG.to_radians();
     Some([y / unit, x / unit, theta / unit * 1f64.to_degrees()])
 }

@@ -3,8 +3,7 @@
 use super::files::BridgeArgs;
 use crate::bridge::BridgeMode;
 use crate::cli::figures;
-use crate::cli::vocabulary::{Answer, Progress, TextTable};
-use crate::error::{Result, counted};
+use crate::cli::vocabulary::{Answer, Progress, Result, TextTable, counted};
 use crate::report::modes_figure;
 use std::fmt::Write as _;
 

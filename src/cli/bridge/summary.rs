@@ -2,15 +2,12 @@
 
 use super::text::beside_the_onset;
 use crate::cli::report::folder::{digest, today};
-use crate::cli::vocabulary::OutputDir;
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{BridgeStudy, Error, Finding, OutputDir, Result, Verdict};
 use crate::files::bridge::{BridgeFile, ModesFormat};
 use crate::files::derivatives::{file_and_sheet, is_table_file};
 use crate::flutter::Onset;
-use crate::plausibility::Finding;
-use crate::study::bridge::{BridgeFlutter, BridgeStudy};
+use crate::study::bridge::BridgeFlutter;
 use crate::units::ReducedFrequencyRange;
-use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::path::{Component, Path, PathBuf};
 

@@ -2,11 +2,9 @@
 
 use crate::cli::headline;
 use crate::cli::text::{figures, of_onsets};
-use crate::cli::vocabulary::speed_or;
-use crate::error::counted;
-use crate::flutter::{FlutterSearch, ModeBranch, OnsetInterval};
-use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy, NAMED_SHARE};
-use crate::verdict::Verdict;
+use crate::cli::vocabulary::{BridgeStudy, FlutterSearch, Verdict, counted, speed_or};
+use crate::flutter::{ModeBranch, OnsetInterval};
+use crate::study::bridge::{BridgeAnswer, BridgeFlutter, NAMED_SHARE};
 use std::fmt::Write as _;
 
 /// Modes with less of the kinetic energy are not named where nobody asked for more.
@@ -47,9 +45,7 @@ pub(super) fn text(
         let named = named.join(", ");
         let _ = writeln!(text, "Modes     of the flutter, by kinetic energy: {named}");
     }
-    for sentence in beside_the_onset(results) {
-        let _ = writeln!(text, "{sentence}");
-    }
+    text.extend(beside_the_onset(results).into_iter().map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -65,9 +61,7 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
         counted(bridge.groups.len(), "group"),
         bridge.width_m()
     );
-    for answer in &results.answers {
-        text.push_str(&one(answer));
-    }
+    text.extend(results.answers.iter().map(one));
     if !results.left_out.is_empty() {
         text.push_str("Onset with fewer modes (by share of the kinetic energy at the onset)\n");
     }
@@ -83,9 +77,7 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
             "  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}"
         );
     }
-    for sentence in beside_the_onset(results) {
-        let _ = writeln!(text, "{sentence}");
-    }
+    text.extend(beside_the_onset(results).into_iter().map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -159,9 +151,7 @@ fn one(answer: &BridgeAnswer) -> String {
             if let Some(slope) = o.damping_slope_s_m {
                 let _ = writeln!(text, "  damping slope dζ/dV {slope:.5} s/m");
             }
-            for warning in &o.warnings {
-                let _ = writeln!(text, "  warning: {warning}");
-            }
+            text.extend(o.warnings.iter().map(|warning| format!("  warning: {warning}\n")));
         }
         other => {
             let _ = writeln!(text, "  {}", other.explain());

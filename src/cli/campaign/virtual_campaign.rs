@@ -1,10 +1,8 @@
 //! `aerodeck campaign virtual`: a raw campaign with a known truth.
 
 use crate::aerodynamics::{FlatPlate, RationalModel};
-use crate::cli::vocabulary::{Answer, OutputDir, Progress, spelt};
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{Answer, Dof, Error, OutputDir, Progress, Result, spelt};
 use crate::files::derivatives::named_table;
-use crate::section::Dof;
 use crate::wind_tunnel::campaign::{FileFormat, write_virtual_campaign};
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
 use clap::builder::PossibleValue;
@@ -80,9 +78,7 @@ pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Ans
             run.in_wind.sampling_hz
         );
     }
-    for finding in plan.tunnel.findings() {
-        let _ = writeln!(text, "  note: {finding}");
-    }
+    text.extend(plan.tunnel.findings().into_iter().map(|finding| format!("  note: {finding}\n")));
     let value = serde_json::json!({
         "section": made.raw.section,
         "runs": made.disturbances,

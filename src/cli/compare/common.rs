@@ -1,13 +1,13 @@
 //! What the comparisons of the thesis share: arguments, tables, figures of metrics, the section of a page.
 
-use crate::cli::vocabulary::TextTable;
+use crate::cli::vocabulary::{
+    Dof, Figure, PageSection, PlottedSeries, Result, TextTable, TimePanel,
+};
 use crate::comparison::forces::{
     CompareOptions, ForceMetrics, Score, ScoreSummary, Scoring, Statement,
 };
-use crate::error::Result;
 use crate::identification::DiscreteFit;
-use crate::report::{Figure, PageSection, PlottedSeries, TimePanel, metrics_figure};
-use crate::section::Dof;
+use crate::report::metrics_figure;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -87,13 +87,13 @@ pub(super) fn metrics_of(
                     None => series.push(PlottedSeries::new(label, vec![point])),
                 }
             }
-            panels.push(TimePanel {
-                y_label: format!("{}: {name}", force.force_name()),
+            panels.push(TimePanel::new(
+                format!("{}: {name}", force.force_name()),
                 series,
-            });
+            ));
         }
     }
-    metrics_figure(title, &panels, 3)
+    metrics_figure(title, &panels)
 }
 
 /// A section of the page of the thesis.
@@ -102,18 +102,13 @@ pub(super) fn section(
     statements: &[Statement],
     figures: Vec<(String, Figure)>,
 ) -> PageSection {
+    let row = |s: &Statement| vec![s.section.to_owned(), s.thesis.to_owned(), s.here.clone()];
+    let rows = statements.iter().map(row).collect();
+    let figures = figures.into_iter();
+    let figures = figures.map(|(caption, figure)| (caption.replace('_', " "), figure));
     PageSection {
-        title: title.to_owned(),
-        header: "section | thesis | here",
-        rows: statements
-            .iter()
-            .map(|s| vec![s.section.to_owned(), s.thesis.to_owned(), s.here.clone()])
-            .collect(),
-        figures: figures
-            .into_iter()
-            .map(|(caption, figure)| (caption.replace('_', " "), figure.svg().to_owned()))
-            .collect(),
-        ..PageSection::default()
+        figures: figures.collect(),
+        ..PageSection::table(title, "section | thesis | here", rows)
     }
 }
 

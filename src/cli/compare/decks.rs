@@ -2,12 +2,10 @@
 
 use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
 use crate::cli::figures as drawn;
-use crate::cli::vocabulary::{Answer, OutputDir, Progress};
+use crate::cli::vocabulary::{Answer, Figure, OutputDir, PageSection, Progress, Result};
 use crate::comparison::forces::{
     CompareOptions, DecksComparison, Score, compare_decks, score_table,
 };
-use crate::error::Result;
-use crate::report::{Figure, PageSection};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -2,18 +2,15 @@
 
 use super::common::{self, beside_the_thesis, metrics_of, metrics_table};
 use crate::cli::figures;
-use crate::cli::vocabulary::{Answer, OutputDir, Progress};
+use crate::cli::vocabulary::{
+    Answer, DerivativePlot, Dof, Figure, OutputDir, PageSection, PlottedSeries, Progress, Result,
+    TimePanel, counted, csv_cell, time_history_figure,
+};
 use crate::comparison::forces::{
     CompareOptions, History, ModelsComparison, Score, compare_models, in_magnitude_band,
     in_phase_band, score_table,
 };
-use crate::error::{Result, counted};
-use crate::files::text::csv_cell;
-use crate::report::{
-    DerivativePlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve, TransferPlot,
-    derivatives_figure, time_history_figure, transfer_figure,
-};
-use crate::section::Dof;
+use crate::report::{TransferCurve, TransferPlot, derivatives_figure, transfer_figure};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -57,14 +54,13 @@ fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
                 model: "measured".into(),
                 points: points.collect(),
             },
-            reference_is_points: true,
             tolerance: Some((0.15, 5.0)),
             models: entry.curves.clone(),
         }
     });
     let (deck, speed) = (&results.deck, results.speed_m_s);
     let title = format!("{deck} at {speed:.2} m/s: transfer functions");
-    transfer_figure(&title, "Frequency (Hz)", &plots.collect::<Vec<_>>())
+    transfer_figure(&title, &plots.collect::<Vec<_>>())
 }
 
 /// Derivatives over reduced velocity (Figures 3.23 to 3.26).
@@ -113,10 +109,7 @@ fn panel(results: &ModelsComparison, history: &History) -> TimePanel {
     let mut all = vec![series("measured", &history.measured)];
     let models = results.models.iter().zip(&history.predicted);
     all.extend(models.map(|(m, values)| series(&m.name, values)));
-    TimePanel {
-        y_label: format!("{} ({unit})", history.force.force_name()),
-        series: all,
-    }
+    TimePanel::new(format!("{} ({unit})", history.force.force_name()), all)
 }
 
 /// The section of the page of the thesis.

@@ -1,12 +1,12 @@
 //! `aerodeck compare signals`: all metrics of two time histories of any laboratory file.
 
-use crate::cli::vocabulary::{Answer, Progress};
+use crate::cli::vocabulary::{Answer, Error, Progress, Result, ensure};
 use crate::comparison::{
     BicoherenceParameters, Metric, PhaseParameters, SignalPair, StationarityParameters,
     WaveletParameters, bicoherence, magnitude, magnitude_warped, peak, phase, probability_density,
     rms, stationarity, wavelet, wavelet_normalised,
 };
-use crate::error::{Error, Result, ensure, positive};
+use crate::error::positive;
 use crate::files::lab::ChannelSet;
 use crate::wind_tunnel::campaign::{SAME_RATE, sampling_by_time};
 use serde::Serialize;

@@ -3,18 +3,18 @@
 mod bridge;
 
 use crate::aerodynamics::RationalAdmittance;
-use crate::cli::vocabulary::{Answer, Progress, in_input, spelt, warn};
+use crate::cli::vocabulary::{
+    Answer, Error, Export, Label, Progress, Result, Runtime, TrainedModel, Verdict, ensure,
+    in_input, sentences, spelt, warn,
+};
 use crate::cli::{headline, stages, text};
-use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::gust_force;
 use crate::flutter::OnsetSearch;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{Export, FmiVersion, Label, Runtime, growth_of, package, write_archive};
-use crate::plausibility::{of_model, sentences};
+use crate::fmu::package::{FmiVersion, growth_of, package, write_archive};
+use crate::plausibility::of_model;
 use crate::study::saved_evidence;
-use crate::trained_model::TrainedModel;
-use crate::verdict::Verdict;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt::Write as _;
 use std::path::PathBuf;

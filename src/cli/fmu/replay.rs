@@ -1,7 +1,6 @@
 //! `aerodeck fmu replay`: the runs that an archive carries, repeated.
 
-use crate::cli::vocabulary::{Answer, Progress};
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{Answer, Error, Progress, Result};
 use crate::fmu::importer::{Fmu, LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 use crate::fmu::package::COMPONENT;
 use serde::Serialize;
@@ -33,15 +32,18 @@ pub(super) fn run(path: &Path, progress: &Progress) -> Result<Answer> {
     let mut platforms = Vec::new();
     for platform in fmu.platforms() {
         let on = fmu.on(&platform);
-        platforms.push(match on.binary() {
-            Err(_) => PlatformReplay {
-                platform,
-                ran: false,
-                same: false,
-                runs: Vec::new(),
-                refusal: None,
-            },
-            Ok(_) => replayed(&on, platform),
+        let done = on.binary().is_ok().then(|| replay(&on));
+        let ran = done.is_some();
+        let (runs, refusal) = match done.transpose() {
+            Ok(runs) => (runs.unwrap_or_default(), None),
+            Err(e) => (Vec::new(), Some(e.to_string())),
+        };
+        platforms.push(PlatformReplay {
+            platform,
+            ran,
+            same: ran && refusal.is_none() && runs.iter().all(|r| r.same),
+            runs,
+            refusal,
         });
     }
     drop(stage);
@@ -54,20 +56,6 @@ pub(super) fn run(path: &Path, progress: &Progress) -> Result<Answer> {
     let json =
         serde_json::json!({ "fmu": file, "as_the_exporter_meant": same, "platforms": platforms });
     Ok(Answer::new(text(&file, &platforms), &json)?.passed_if(same))
-}
-
-fn replayed(fmu: &Fmu, platform: String) -> PlatformReplay {
-    let (runs, refusal) = match replay(fmu) {
-        Ok(runs) => (runs, None),
-        Err(e) => (Vec::new(), Some(e.to_string())),
-    };
-    PlatformReplay {
-        platform,
-        ran: true,
-        same: refusal.is_none() && runs.iter().all(|r| r.same),
-        runs,
-        refusal,
-    }
 }
 
 /// The run that is furthest off.

@@ -8,12 +8,10 @@ use crate::cli::bridge::files::{
     RESPONSE_FIGURE, ROOTS_FIGURE,
 };
 use crate::cli::bridge::summary::{BridgeSummary, ModeFacts, SectionFacts};
-use crate::error::Result;
+use crate::cli::vocabulary::{PageSection, Result, rendered};
 use crate::files::bridge::{BridgeFile, DampingRatios};
 use crate::fmu::importer::Fmu;
-use crate::report::{
-    PageCurve, PageFigure, PageSection, StudyPage, rendered, sections_of, summary_figure,
-};
+use crate::report::{PageCurve, PageFigure, StudyPage, sections_of, summary_figure};
 use crate::study::bridge::ModeShare;
 use crate::study::bridge::{LeftOut, NAMED_SHARE};
 use std::path::Path;
@@ -72,7 +70,7 @@ pub(super) fn page(folder: &Path, text: &str, in_the_archive: bool) -> Result<St
         let shown = facts.flutter.shown_modes(own.map(|o| o.branch.as_str()));
         (page.speeds, page.curves) = (speeds, chosen(curves, &shown));
     }
-    page.summary = summary_figure(&page)?.map_or(String::new(), |f| f.svg().to_owned());
+    page.summary = summary_figure(&page)?;
     if read(BRIDGE_FMU).is_some() {
         page.fmu = BRIDGE_FMU.to_owned();
         page.variables = variables_of(&Fmu::open(folder.join(BRIDGE_FMU))?);
@@ -156,12 +154,13 @@ fn taking_part(shares: &[ModeShare]) -> PageSection {
     };
     let text =
         "Shares of the kinetic energy at the onset; phases to the mode with the largest share.";
+    let (title, header) = (
+        "Modes that take part in the flutter",
+        "mode | f in still air, Hz | share % | phase °",
+    );
     PageSection {
-        title: "Modes that take part in the flutter".to_owned(),
         text: vec![text.to_owned()],
-        header: "mode | f in still air, Hz | share % | phase °",
-        rows: named.map(row).collect(),
-        ..PageSection::default()
+        ..PageSection::table(title, header, named.map(row).collect())
     }
 }
 
@@ -178,12 +177,9 @@ fn fewer(left_out: &[LeftOut], full: Option<f64>) -> PageSection {
             change.unwrap_or("–".to_owned()),
         ]
     };
-    PageSection {
-        title: "Onset with fewer modes".to_owned(),
-        header: "share from, % | modes | V m/s | change %",
-        rows: left_out.iter().map(row).collect(),
-        ..PageSection::default()
-    }
+    let header = "share from, % | modes | V m/s | change %";
+    let rows = left_out.iter().map(row).collect();
+    PageSection::table("Onset with fewer modes", header, rows)
 }
 
 fn data(facts: &BridgeSummary) -> PageSection {
@@ -199,12 +195,9 @@ fn data(facts: &BridgeSummary) -> PageSection {
             s.licence.lines().next().unwrap_or("").to_owned(),
         ]
     };
-    PageSection {
-        title: "Sections and their data".to_owned(),
-        header: "section | B m | tested K = ωB/V | forces from | licence",
-        rows: facts.sections.iter().map(row).collect(),
-        ..PageSection::default()
-    }
+    let header = "section | B m | tested K = ωB/V | forces from | licence";
+    let rows = facts.sections.iter().map(row).collect();
+    PageSection::table("Sections and their data", header, rows)
 }
 
 fn modes(facts: &BridgeSummary) -> PageSection {

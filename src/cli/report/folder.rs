@@ -1,7 +1,6 @@
 //! What a folder of results holds, and whose results they are.
 
-use crate::error::{Error, Result};
-use crate::fmu::package::Label;
+use crate::cli::vocabulary::{Error, Label, Result};
 use crate::json;
 use serde::de::DeserializeOwned;
 use serde_json::Value;

@@ -2,11 +2,10 @@
 
 use crate::cli::result_files::CURVES;
 use crate::cli::text::interval;
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{Error, Figure, Result, Study};
 use crate::flutter::{ModeBranch, Onset, OnsetInterval};
 use crate::fmu::package::live_module;
 use crate::report::{PageCurve, PageFigure};
-use crate::study::Study;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::json;
@@ -105,13 +104,12 @@ pub(super) fn round(x: f64) -> f64 {
     (1e9 * x).round() / 1e9
 }
 
-/// The figure in a file, without what only a file of its own needs.
+/// A figure of a file with its words.
 pub(super) fn of_svg(text: &str, title: &str, caption: &'static str) -> Option<PageFigure> {
-    let svg = text[text.find("<svg")?..].to_owned();
-    Some(PageFigure {
+    Figure::of_file(text).map(|figure| PageFigure {
         title: title.to_owned(),
         caption,
-        svg,
+        figure,
     })
 }
 
@@ -122,18 +120,17 @@ pub(super) fn curves_of(text: &str, own: &str) -> Result<(Vec<f64>, Vec<PageCurv
         .from_reader(text.as_bytes());
     let broken =
         |found: String| Error::input(CURVES, "curves as `aerodeck study` writes them", found);
-    let mut points: Vec<(String, String, f64, f64, f64)> = Vec::new();
-    for row in reader.records() {
+    let point = |row: csv::Result<csv::StringRecord>| {
         let row = row.map_err(|e| broken(e.to_string()))?;
+        let field = |i: usize| row.get(i).unwrap_or("");
         let number = |i: usize| {
-            let field = row.get(i).unwrap_or("");
-            field
-                .parse::<f64>()
-                .map_err(|_| broken(format!("`{field}`")))
+            let found = |_| broken(format!("`{}`", field(i)));
+            field(i).parse::<f64>().map_err(found)
         };
-        let name = |i: usize| row.get(i).unwrap_or("").to_owned();
-        points.push((name(0), name(1), number(2)?, number(3)?, number(4)?));
-    }
+        let name = |i: usize| field(i).to_owned();
+        Ok((name(0), name(1), number(2)?, number(3)?, number(4)?))
+    };
+    let points = reader.records().map(point).collect::<Result<Vec<_>>>()?;
     let mut speeds: Vec<f64> = points.iter().map(|p| p.2).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();

@@ -1,6 +1,6 @@
 //! The page as a browser prints it.
 
-use crate::error::{Error, Result};
+use crate::cli::vocabulary::{Error, Result};
 use std::path::Path;
 use std::process::Command;
 

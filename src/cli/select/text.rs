@@ -1,10 +1,8 @@
 //! A selection in words and figures.
 
-use crate::cli::vocabulary::TextTable;
-use crate::error::{Result, counted};
-use crate::report::{Figure, HeatMap, heat_map_figure};
+use crate::cli::vocabulary::{Figure, Result, Study, TextTable, counted};
+use crate::report::{HeatMap, heat_map_figure};
 use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};
-use crate::study::Study;
 use std::fmt::Write as _;
 
 /// The table of cells, the recommendation, and why metrics are missing.

@@ -12,7 +12,7 @@ use crate::flutter::{
     pk_onset, static_part, trace_modes, unwanted_growth_below,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::verdict::{ModesLeftOut, UntestedParts};
+use crate::verdict::{MeanRotation, ModesLeftOut, UntestedParts};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ pub struct BridgeFlutter {
     pub growth: Option<UnwantedGrowth>,
     /// Mean rotation where it is farthest from the tests, at the onset or else at the required speed, where static coefficients are
     /// stated.
-    pub mean_rotation: Option<BridgeRotation>,
+    pub mean_rotation: Option<MeanRotation>,
     /// What constraints on the fits of sections did to the onset; `None` where none hold one, or models were read from files.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constraints: Option<MovedOnset>,
@@ -127,40 +127,32 @@ impl BridgeFlutter {
     }
 }
 
-/// Rotation of a bridge in the mean wind.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct BridgeRotation {
-    /// Wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Where it is farthest from that of the tests, deg; nose-up positive.
-    pub rotation_deg: f64,
-    /// That of the tests there, deg; 0 where it is not stated.
-    pub tested_deg: f64,
-}
-
 /// The rotation in the mean wind; `None` where sections state no static coefficients.
 fn mean_rotation(
     study: &BridgeStudy,
     at_rest: &TransferMatrix,
     speed_m_s: f64,
-) -> Result<Option<BridgeRotation>> {
+) -> Result<Option<MeanRotation>> {
     let Some(coefficients) = study.static_coefficients() else {
         return Ok(None);
     };
     let mean = static_deflection(&study.by_model, &coefficients, at_rest, speed_m_s)?;
     let nodes = mean.iter().zip(study.tested_angles_deg());
-    let rotations = nodes.map(|(deflection, tested_deg)| BridgeRotation {
+    let rotations = nodes.map(|(deflection, tested_deg)| MeanRotation {
         speed_m_s,
         rotation_deg: deflection[2].to_degrees(),
-        tested_deg,
+        tested_deg: Some(tested_deg),
     });
-    let away = |r: &BridgeRotation| (r.rotation_deg - r.tested_deg).abs();
+    let away = |r: &MeanRotation| (r.rotation_deg - r.tested_deg.unwrap_or(0.0)).abs();
     Ok(rotations.max_by(|a, b| away(a).total_cmp(&away(b))))
 }
 
-/// What was found; why nothing was stands among what failed.
-fn noted<T>(failed: &mut Vec<String>, what: &str, found: Result<T>) -> Option<T> {
-    found.map_err(|e| failed.push(format!("{what}: {e}"))).ok()
+/// What was found, or nothing; why nothing was stands among what failed.
+fn noted<T: Default>(failed: &mut Vec<String>, what: &str, found: Result<T>) -> T {
+    found.unwrap_or_else(|e| {
+        failed.push(format!("{what}: {e}"));
+        T::default()
+    })
 }
 
 /// Searches the onset by every route and says what takes part.
@@ -177,30 +169,21 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         || study.by_table.as_ref().map(|b| by_table(b, &search)),
         || by_model(&study.by_model, &search, tested),
     );
-    let found = of_tables.map(|found| noted(&mut failed, "p-k iteration of the tables", found));
-    answers.extend(found.flatten());
+    let of_tables = of_tables.transpose();
+    answers.extend(noted(&mut failed, "p-k iteration of the tables", of_tables));
     let mut by_model = by_model?;
     if let FlutterSearch::Onset(onset) = &mut by_model.search {
-        let interval = noted(
-            &mut failed,
-            "interval of the onset",
-            study.onset_interval(onset),
-        );
+        let interval = study.onset_interval(onset).map(Some);
+        let interval = noted(&mut failed, "interval of the onset", interval);
         onset.interval = interval.unwrap_or(onset.interval.clone());
         let found = study.contradictions(onset);
         let found = noted(&mut failed, "onsets of single mean speeds", found);
-        onset.warnings.extend(found.into_iter().flatten());
+        onset.warnings.extend(found);
     }
-    let constraints = noted(
-        &mut failed,
-        "constraints",
-        study.moved_onset(&by_model.search),
-    );
-    let untested = noted(
-        &mut failed,
-        "parts without a test",
-        study.untested(&by_model.search),
-    );
+    let constraints = study.moved_onset(&by_model.search);
+    let constraints = noted(&mut failed, "constraints", constraints);
+    let untested = study.untested(&by_model.search);
+    let untested = noted(&mut failed, "parts without a test", untested);
     let with_all = study.with_all_modes(&by_model.search);
     let modes_left_out = noted(&mut failed, "modes left out", with_all);
     let section = coupled(&study.by_model)?;
@@ -218,9 +201,13 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let of_tables = table_divergence(study);
     let table_divergence = noted(&mut failed, "divergence of the tables", of_tables);
     let growth = unwanted_growth_below(Some(&by_model.search), &section, &search, tested);
-    let growth = noted(&mut failed, "scan for growth", growth);
-    let galloping = galloping(study, &search);
-    let galloping = noted(&mut failed, "galloping by static coefficients", galloping);
+    let growth = noted(&mut failed, "scan for growth", growth.map(Some));
+    let galloping_m_s = galloping(study, &search);
+    let galloping_m_s = noted(
+        &mut failed,
+        "galloping by static coefficients",
+        galloping_m_s,
+    );
     // where the answer is: by the tables first, which are the headline
     let of = |a: &BridgeAnswer| a.search.critical_speed_m_s();
     let critical = answers.iter().find_map(of).or(of(&by_model));
@@ -233,15 +220,15 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     Ok(BridgeFlutter {
         answers,
         curves,
-        left_out: left_out.unwrap_or_default(),
+        left_out,
         divergence_m_s,
-        table_divergence: table_divergence.flatten(),
-        galloping_m_s: galloping.flatten(),
+        table_divergence,
+        galloping_m_s,
         growth,
         mean_rotation,
-        constraints: constraints.flatten(),
-        untested: untested.flatten(),
-        modes_left_out: modes_left_out.flatten(),
+        constraints,
+        untested,
+        modes_left_out,
         failed,
     })
 }
@@ -339,14 +326,9 @@ fn fewer_modes(
     search: &OnsetSearch,
 ) -> Result<Vec<LeftOut>> {
     let (bridge, mut all) = (&study.by_model, Vec::<LeftOut>::new());
-    let Some(motion) = &full.motion else {
-        return Ok(all);
-    };
-    for below_share in SHARES {
-        let kept = motion
-            .modes
-            .iter()
-            .filter(|m| m.energy_share >= below_share);
+    let shares = full.motion.as_ref().map_or(&[][..], |m| &m.modes);
+    for below_share in SHARES.into_iter().filter(|_| !shares.is_empty()) {
+        let kept = shares.iter().filter(|m| m.energy_share >= below_share);
         let mut modes: Vec<usize> = kept.map(|m| m.mode).collect();
         modes.sort_unstable();
         if modes.len() == bridge.modes.len() || all.last().is_some_and(|l| l.modes == modes) {

@@ -51,9 +51,8 @@ impl BridgeStudy {
             constraints: results.constraints,
             failures: failed.iter().map(|f| failure(f)).collect(),
             mean_rotation: results.mean_rotation.map(|mean| MeanRotation {
-                speed_m_s: mean.speed_m_s,
-                at_onset_deg: mean.rotation_deg,
-                tested_deg: stated.then_some(mean.tested_deg),
+                tested_deg: mean.tested_deg.filter(|_| stated),
+                ..mean
             }),
             // the section that was moved least is what the answer rests on
             tested_rotation_deg: self

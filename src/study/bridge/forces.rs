@@ -132,11 +132,7 @@ impl SectionForceModels {
                 Error::input(place, "a fit to a table", e.message().replace('\n', " "))
             })?,
             None => FrequencyFit {
-                form: Form::Laguerre {
-                    filters: Some(block.filters),
-                    feed_through: FeedThrough::default(),
-                    pole_per_transfer_function: false,
-                },
+                form: Form::laguerre(block.filters, FeedThrough::default()),
                 ..FrequencyFit::default()
             },
         };

@@ -44,11 +44,15 @@ pub struct BridgeMotion {
 impl BridgeMotion {
     /// Heave over rotation where the girder turns most.
     pub fn mode_ratio(&self, width_m: f64) -> Option<ModeRatio> {
-        let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
-        let turning = |n: &&NodeMotion| complex(n.motion[2]).norm();
-        let nodes = self.nodes.iter();
-        let most = nodes.max_by(|a, b| turning(a).total_cmp(&turning(b)));
-        most.and_then(|n| ModeRatio::new(complex(n.motion[0]), complex(n.motion[2]) * width_m))
+        let [heave, _, rotation] = self.turning_most()?;
+        ModeRatio::new(heave, rotation * width_m)
+    }
+
+    /// The motion of the node that turns most.
+    pub(crate) fn turning_most(&self) -> Option<[Complex<f64>; 3]> {
+        let complex = |n: &NodeMotion| n.motion.map(|[re, im]| Complex::new(re, im));
+        let nodes = self.nodes.iter().map(complex);
+        nodes.max_by(|a, b| a[2].norm().total_cmp(&b[2].norm()))
     }
 }
 

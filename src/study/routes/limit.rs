@@ -1,6 +1,6 @@
 //! Forces in slow motion, as affine functions of `iK`: the limit of a model, and the flat plate without lag.
 
-use super::super::Study;
+use super::super::SpeedRange;
 use crate::aerodynamics::{RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -35,11 +35,11 @@ pub(super) fn steady_flat_plate() -> RationalModel {
 
 /// Onset of an affine model, m/s.
 pub(super) fn limit_onset(
-    study: &Study,
+    speeds: &SpeedRange,
     structure: &Structure,
     limit: &RationalModel,
 ) -> Result<Option<f64>> {
     let section = CoupledSection::with_model(structure, limit)?;
-    let found = find_onset("", &section, &study.speeds().search(), None)?;
+    let found = find_onset("", &section, &speeds.search(), None)?;
     Ok(found.onset().map(|o| o.at.speed_m_s))
 }

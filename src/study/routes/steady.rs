@@ -1,7 +1,7 @@
 //! Quasi-steady theory beside the other routes: from static coefficients where the study gives them, else the
 //! low-frequency limit of the derivatives.
 
-use super::super::Study;
+use super::super::SpeedRange;
 use super::limit::limit_onset;
 use super::{Forces, RouteTable, THEORY};
 use crate::aerodynamics::RationalModel;
@@ -19,12 +19,11 @@ impl RouteTable {
     /// Quasi-steady theory with static coefficients, each wind speed about its own equilibrium (1.31).
     pub(super) fn add_static_coefficients(
         &mut self,
-        study: &Study,
+        speeds: &SpeedRange,
         structure: &Structure,
         theory: &QuasiSteady,
     ) -> Result<()> {
-        let name = THEORY;
-        let found = quasi_steady_onset(name, structure, theory, &study.speeds().search())?;
+        let found = quasi_steady_onset(THEORY, structure, theory, &speeds.search())?;
         // the mode at onset belongs to the linear forces about the equilibrium there
         let speed = found.search.onset().map(|o| o.at.speed_m_s);
         let path = static_equilibria(structure, theory, speed.as_slice())?;
@@ -35,25 +34,29 @@ impl RouteTable {
             _ => None,
         };
         let forces = Forces {
-            name: name.into(),
+            name: THEORY.into(),
             model: &linear,
             structure,
+            speeds,
             tested: None,
             divergence_m_s,
             quasi_steady_m_s: speed,
         };
-        let mut route = forces.route(study, OnsetMethod::Eigenvalues, found.search)?;
+        let mut route = forces.route(OnsetMethod::Eigenvalues, found.search)?;
         route.low_frequency_limit = true;
         self.routes.push(route);
-        let path = static_equilibria(structure, theory, &study.speeds().curve_speeds_m_s())?;
-        self.draw(&forces, quasi_steady_modes(name, structure, theory, &path));
+        let path = static_equilibria(structure, theory, &speeds.curve_speeds_m_s())?;
+        self.draw(
+            &forces,
+            quasi_steady_modes(THEORY, structure, theory, &path),
+        );
         Ok(())
     }
 
     /// The affine limit of the deck's own forces.
     pub(super) fn add_quasi_steady(
         &mut self,
-        study: &Study,
+        speeds: &SpeedRange,
         structure: &Structure,
         limit: &RationalModel,
         from: Option<ReducedFrequency>,
@@ -62,13 +65,14 @@ impl RouteTable {
             name: "quasi-steady limit".into(),
             model: limit,
             structure,
+            speeds,
             tested: None,
             divergence_m_s: divergence_with_forces(structure, limit)?,
-            quasi_steady_m_s: limit_onset(study, structure, limit)?,
+            quasi_steady_m_s: limit_onset(speeds, structure, limit)?,
         };
         let section = CoupledSection::with_model(structure, limit)?;
-        let found = find_onset(&forces.name, &section, &study.speeds().search(), None)?;
-        let mut route = forces.route(study, OnsetMethod::Eigenvalues, found)?;
+        let found = find_onset(&forces.name, &section, &speeds.search(), None)?;
+        let mut route = forces.route(OnsetMethod::Eigenvalues, found)?;
         route.low_frequency_limit = true;
         route.warnings.push(match from {
             Some(k) => format!(
@@ -79,8 +83,8 @@ impl RouteTable {
             None => "circulation without lag, C = 1".into(),
         });
         self.routes.push(route);
-        let speeds = study.speeds().curve_speeds_m_s();
-        self.draw(&forces, trace_modes(&forces.name, &section, &speeds));
+        let curves = trace_modes(&forces.name, &section, &speeds.curve_speeds_m_s());
+        self.draw(&forces, curves);
         Ok(())
     }
 }

@@ -38,20 +38,22 @@ pub struct OnsetSearch {
 
 impl Default for OnsetSearch {
     fn default() -> Self {
-        Self {
-            speed_max_m_s: 100.0,
-            speeds: 200,
-        }
+        Self::new(100.0, 200)
     }
 }
 
 impl OnsetSearch {
-    /// Up to a wind speed, m/s, in the usual number of steps.
-    pub fn up_to(speed_max_m_s: f64) -> Self {
+    /// Up to a wind speed, m/s, in so many steps.
+    pub fn new(speed_max_m_s: f64, speeds: usize) -> Self {
         Self {
             speed_max_m_s,
-            ..Self::default()
+            speeds,
         }
+    }
+
+    /// The same in the usual number of steps.
+    pub fn up_to(speed_max_m_s: f64) -> Self {
+        Self::new(speed_max_m_s, Self::default().speeds)
     }
 
     /// The wind speeds that are looked at, m/s: equally spaced, still air left out.

@@ -104,6 +104,15 @@ impl Default for Form {
 }
 
 impl Form {
+    /// So many filters of one pole for all transfer functions.
+    pub fn laguerre(filters: usize, feed_through: FeedThrough) -> Self {
+        Self::Laguerre {
+            filters: Some(filters),
+            feed_through,
+            pole_per_transfer_function: false,
+        }
+    }
+
     /// Number of filters or lags.
     pub(crate) fn filters(&self) -> usize {
         match self {

@@ -280,11 +280,7 @@ impl GridAxis {
 }
 
 fn with_filters(form: &Form, filters: usize) -> Form {
-    Form::Laguerre {
-        filters: Some(filters),
-        feed_through: form.feed_through(),
-        pole_per_transfer_function: false,
-    }
+    Form::laguerre(filters, form.feed_through())
 }
 
 #[cfg(test)]

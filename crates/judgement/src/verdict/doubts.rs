@@ -290,13 +290,13 @@ fn remark(text: &str) -> Doubt {
 fn rotation(evidence: &Evidence) -> Option<Doubt> {
     let mean = evidence.mean_rotation?;
     let tested_deg = mean.tested_deg.unwrap_or(0.0);
-    let away = (mean.at_onset_deg - tested_deg).abs();
+    let away = (mean.rotation_deg - tested_deg).abs();
     let (known, others) = ROTATION_DEG;
     if away < known {
         return None;
     }
     let kind = DoubtKind::MeanRotation {
-        at_onset_deg: mean.at_onset_deg,
+        at_onset_deg: mean.rotation_deg,
         tested_deg,
     };
     let assumed = match mean.tested_deg {
@@ -305,9 +305,9 @@ fn rotation(evidence: &Evidence) -> Option<Doubt> {
     };
     let text = format!(
         "The deck stands at {:.1}° in the mean wind of {}, the forces are those at {tested_deg:.1}°{assumed}",
-        mean.at_onset_deg,
+        mean.rotation_deg,
         speed(mean.speed_m_s)
     );
-    let settled = format!("forces measured at {:.1}°", mean.at_onset_deg);
+    let settled = format!("forces measured at {:.1}°", mean.rotation_deg);
     Some(Doubt::new(Severity::severe_if(away > others), kind, text).settled_by(settled))
 }

@@ -260,12 +260,12 @@ pub struct Failure {
 }
 
 /// Rotation in the mean wind, and at the tests.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MeanRotation {
     /// The critical wind speed, or else the required one, m/s.
     pub speed_m_s: f64,
-    /// Greatest, there, deg; nose-up positive.
-    pub at_onset_deg: f64,
+    /// Greatest, there, or farthest from that of the tests, deg; nose-up positive.
+    pub rotation_deg: f64,
     /// That of the tests, deg; 0 where it is not stated.
     pub tested_deg: Option<f64>,
 }

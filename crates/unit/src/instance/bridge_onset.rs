@@ -198,10 +198,7 @@ impl OnsetCard {
             Err(unknown) => return (unknown, None),
         };
         let mut searched = None;
-        let search = OnsetSearch {
-            speed_max_m_s: limit,
-            speeds: SPEEDS,
-        };
+        let search = OnsetSearch::new(limit, SPEEDS);
         match simulated_onset("bridge", built.stepper.section(), &search, tested) {
             Ok(found) => {
                 let onset = found.onset();

@@ -262,10 +262,7 @@ impl OnsetCard {
         let Some(tested) = tested.filter(|_| self.numbers.stable_below) else {
             return;
         };
-        let search = OnsetSearch {
-            speed_max_m_s: self.numbers.speed_m_s.value,
-            speeds: ON_THE_WAY,
-        };
+        let search = OnsetSearch::new(self.numbers.speed_m_s.value, ON_THE_WAY);
         let left = left_tests(section, &search, tested)
             .unwrap_or_else(|why| Some(format!("modes cannot be followed: {why}")));
         self.numbers.stable_below = left.is_none();

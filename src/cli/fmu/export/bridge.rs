@@ -2,15 +2,13 @@
 
 use super::{ExportKind, FmuExportArgs, none_of};
 use crate::cli::bridge::{self, files::BRIDGE_FMU};
-use crate::cli::vocabulary::{Answer, Progress, warn};
+use crate::cli::vocabulary::{
+    Answer, BridgeStudy, Error, Export, Label, Progress, Result, TrainedModel, Verdict, counted,
+    sentences, warn,
+};
 use crate::cli::{headline, stages};
-use crate::error::{Error, Result, counted};
 use crate::files::bridge::read_field;
-use crate::fmu::package::{Export, Label};
-use crate::plausibility::sentences;
-use crate::study::bridge::{BridgeExportOptions, BridgeStudy, SectionForcePart, bridge_flutter};
-use crate::trained_model::TrainedModel;
-use crate::verdict::Verdict;
+use crate::study::bridge::{BridgeExportOptions, SectionForcePart, bridge_flutter};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

@@ -154,11 +154,7 @@ impl ComparedModel {
 /// This program's fit with the filters of the thesis: left to the data there would be more of them.
 fn with_feed_through() -> TimeFit {
     TimeFit {
-        form: Form::Laguerre {
-            filters: Some(THESIS_FILTERS),
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        },
+        form: Form::laguerre(THESIS_FILTERS, FeedThrough::default()),
         ..TimeFit::default()
     }
 }

@@ -147,10 +147,7 @@ impl<'a> Finder<'a> {
         Ok(Self {
             model,
             sweep: forces.map(sweep).transpose()?,
-            search: OnsetSearch {
-                speed_max_m_s,
-                speeds: SPEEDS,
-            },
+            search: OnsetSearch::new(speed_max_m_s, SPEEDS),
         })
     }
 

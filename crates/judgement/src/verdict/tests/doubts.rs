@@ -216,7 +216,7 @@ fn failures_input_and_rotation_are_weighed() {
     assert_eq!(words(&implausible), "CANNOT BE JUDGED");
     let turned = |at_onset_deg| Evidence {
         mean_rotation: Some(MeanRotation {
-            at_onset_deg,
+            rotation_deg: at_onset_deg,
             tested_deg: None,
             speed_m_s: 36.9,
         }),
