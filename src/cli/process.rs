@@ -77,12 +77,11 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
-    let reading = progress.during("reading the campaign", || {
+    let raw = progress.during("reading the campaign", || {
         Campaign::read(&args.campaign)?.load()
     })?;
-    let mut notes = reading.words(FindingSeverity::Note);
-    let mut doubts = reading.words(FindingSeverity::Doubt);
-    let raw = reading.raw;
+    let mut notes = raw.words(FindingSeverity::Note);
+    let mut doubts = raw.words(FindingSeverity::Doubt);
     let total = raw.runs.len();
     let processed = progress.counting("processing", |on_done| {
         process(&raw, &options, &|done| on_done(done, total))
