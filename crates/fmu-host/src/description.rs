@@ -48,8 +48,6 @@ impl std::fmt::Display for Value {
 /// Attributes that a variable may take over from its declared type.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TypeAttributes {
-    /// Physical quantity.
-    pub quantity: Option<String>,
     /// Unit.
     pub unit: Option<String>,
     /// Unit for display.
@@ -166,10 +164,10 @@ pub(super) fn initial_choices(
 pub struct UnitDefinition {
     /// Name.
     pub name: String,
-    /// Exponents of kg, m, s, A, K, mol, cd, rad, then factor and offset to the SI unit; `None` when not stated.
-    pub base: Option<([i32; 8], f64, f64)>,
-    /// Units for display, with factor and offset: `value in display unit = factor · value + offset`.
-    pub display_units: Vec<(String, f64, f64)>,
+    /// Factor to the SI unit; `None` when not stated.
+    pub factor: Option<f64>,
+    /// Units for display, with their factor: `value in display unit = factor · value + offset`.
+    pub display_units: Vec<(String, f64)>,
     /// Line in the file.
     pub line: usize,
 }
@@ -262,16 +260,12 @@ pub struct ModelDescription {
     pub model_name: String,
     /// Fingerprint that must be handed to the binary.
     pub guid: String,
-    /// What it is.
-    pub description: Option<String>,
     /// Program that made it.
     pub generation_tool: Option<String>,
     /// `flat` or `structured`.
     pub variable_naming_convention: String,
     /// Capabilities; `None` when it is not for co-simulation.
     pub co_simulation: Option<CoSimulation>,
-    /// Whether it offers model exchange.
-    pub model_exchange: bool,
     /// Units.
     pub units: Vec<UnitDefinition>,
     /// Declared types.
