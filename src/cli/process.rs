@@ -11,7 +11,7 @@ use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result, ensure};
 use crate::files::coefficients::named_coefficients;
-use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
+use crate::files::derivatives::{workbook_bytes_in, write_csv, write_points};
 use crate::files::text::file_name;
 use crate::files::toml_lines;
 use crate::identification::derivatives::{
@@ -306,7 +306,10 @@ fn write_table(
     let mut text = Vec::new();
     write_csv(&table, &mut text).map_err(|e| Error::io(TABLE, e))?;
     out.write(TABLE, text)?;
-    out.write(workbook_name(section), workbook_bytes(&table)?)?;
+    out.write(
+        workbook_name(section),
+        workbook_bytes_in(&table, &Convention::default())?,
+    )?;
     let mut odd = of_table(&table, &Convention::default());
     odd.retain(|f| f.kind != FindingKind::Contradiction);
     Ok(odd)

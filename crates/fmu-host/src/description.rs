@@ -95,19 +95,15 @@ impl ScalarVariable {
     /// `initial` as stated, or its default; `None` for inputs and time, which have none, and for combinations of
     /// causality and variability that are not legal (table in section 2.2.7 of the standard).
     pub(crate) fn effective_initial(&self) -> Option<Initial> {
-        self.initial.or_else(|| {
-            initial_choices(self.causality, self.variability).and_then(|(default, _)| default)
-        })
+        let choices = initial_choices(self.causality, self.variability);
+        self.initial.or(choices.and_then(|(default, _)| default))
     }
 
     /// Whether an importer may set it before initialisation ends or during the run.
     pub fn settable(&self) -> bool {
-        self.causality == Causality::Input
-            || (self.variability != Variability::Constant
-                && matches!(
-                    self.effective_initial(),
-                    Some(Initial::Exact | Initial::Approx)
-                ))
+        let initial = self.effective_initial();
+        let starts = matches!(initial, Some(Initial::Exact | Initial::Approx));
+        self.causality == Causality::Input || (self.variability != Variability::Constant && starts)
     }
 
     /// An attribute of the variable or, when it states none, of its declared type among `types`
@@ -117,18 +113,13 @@ impl ScalarVariable {
         types: &HashMap<&str, &SimpleType>,
         pick: impl Fn(&TypeAttributes) -> Option<T>,
     ) -> Option<T> {
-        pick(&self.attributes).or_else(|| {
-            let declared = types.get(self.declared_type.as_deref()?)?;
-            pick(&declared.attributes)
-        })
+        let declared = || types.get(self.declared_type.as_deref()?);
+        pick(&self.attributes).or_else(|| pick(&declared()?.attributes))
     }
 
     /// Place for findings.
     pub(super) fn place(&self) -> String {
-        format!(
-            "modelDescription.xml, line {}, variable `{}`",
-            self.line, self.name
-        )
+        format!("{FILE}, line {}, variable `{}`", self.line, self.name)
     }
 }
 

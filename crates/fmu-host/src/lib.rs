@@ -191,8 +191,8 @@ impl Fmu {
             .ok_or_else(|| {
                 let first = folders.first().unwrap_or(&"(this platform)");
                 let expected = format!("binaries/{first}/{identifier}.{ending}");
-                let found = match self.platforms() {
-                    none if none.is_empty() => "no binary at all".into(),
+                let found = match &self.platforms()[..] {
+                    [] => "no binary at all".to_owned(),
                     others => format!("binaries for {}", others.join(", ")),
                 };
                 Error::input("archive", expected, found).in_file(&self.path)

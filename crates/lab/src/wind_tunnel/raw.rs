@@ -35,7 +35,7 @@ pub struct LoadCell {
 }
 
 /// The rig that holds the section model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rig {
     /// Length of the model along the span, m.

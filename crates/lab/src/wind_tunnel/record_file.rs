@@ -59,7 +59,7 @@ impl RecordSource for RecordFile {
                 break;
             }
             rows.push(&line).map_err(|e| e.in_file(&self.path))?;
-            if rows.motion[0].len() == BLOCK_SAMPLES {
+            if rows.channels[0].len() == BLOCK_SAMPLES {
                 rows.pass_on(f)?;
             }
         }
@@ -146,8 +146,8 @@ fn cells(line: &str) -> impl Iterator<Item = &str> {
 struct RecordRows<'a> {
     file: &'a RecordFile,
     line: usize,
-    motion: Vec<Vec<f64>>,
-    force: Vec<Vec<f64>>,
+    /// Motions, then forces.
+    channels: Vec<Vec<f64>>,
     read: usize,
     first_time: f64,
     last_time: f64,
@@ -155,12 +155,10 @@ struct RecordRows<'a> {
 
 impl<'a> RecordRows<'a> {
     fn new(file: &'a RecordFile) -> Self {
-        let block = || vec![Vec::with_capacity(BLOCK_SAMPLES); file.header.dofs.len()];
         Self {
             file,
             line: file.names_line,
-            motion: block(),
-            force: block(),
+            channels: vec![Vec::with_capacity(BLOCK_SAMPLES); 2 * file.header.dofs.len()],
             read: 0,
             first_time: 0.0,
             last_time: 0.0,
@@ -168,13 +166,12 @@ impl<'a> RecordRows<'a> {
     }
 
     fn pass_on(&mut self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
-        if self.motion[0].is_empty() {
+        if self.channels[0].is_empty() {
             return Ok(());
         }
-        let (motion, force) = (&self.motion, &self.force);
+        let (motion, force) = self.channels.split_at(self.file.header.dofs.len());
         f(RecordBlock { motion, force })?;
-        let channels = self.motion.iter_mut().chain(&mut self.force);
-        channels.for_each(Vec::clear);
+        self.channels.iter_mut().for_each(Vec::clear);
         Ok(())
     }
 
@@ -195,11 +192,9 @@ impl<'a> RecordRows<'a> {
                 let place = Place::line(self.line).column(&self.file.names[column]);
                 Error::input(place, "a finite number", format!("`{}`", cell.trim()))
             })?;
-            let n = self.motion.len();
             match channel {
                 None => self.check_time(value)?,
-                Some(i) if *i < n => self.motion[*i].push(value),
-                Some(i) => self.force[*i - n].push(value),
+                Some(i) => self.channels[*i].push(value),
             }
         }
         if cells.next().is_some() {

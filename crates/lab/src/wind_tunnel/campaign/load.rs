@@ -82,10 +82,9 @@ impl Campaign {
     fn density(&self, map: &ChannelMap, run: &RunBlock, by_file: Air) -> Result<f64> {
         let common = Air::over(by_file, self.air);
         let has_map = map.air_density.is_some() || map.temperature.is_some();
-        let place = if run.air.is_empty() && !has_map {
-            "air".to_owned()
-        } else {
-            format!("air of run `{}`", run.name)
+        let place = match run.air.is_empty() && !has_map {
+            true => "air".to_owned(),
+            false => format!("air of run `{}`", run.name),
         };
         Air::over(run.air, common).density(&place)
     }

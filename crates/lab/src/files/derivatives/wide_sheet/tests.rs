@@ -3,9 +3,7 @@
 use crate::aerodynamics::derivatives::notation::{Argument, Notation, StatedConvention};
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
-use crate::files::derivatives::{
-    ReadOptions, embedded, read_table, read_table_with, template_bytes,
-};
+use crate::files::derivatives::{ReadOptions, embedded, read_table_with, template_bytes};
 use rust_xlsxwriter::{Format, Workbook, Worksheet};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -232,7 +230,8 @@ fn a_template_states_its_convention() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("table.xlsx");
     std::fs::write(&path, template_bytes(&convention.or_usual()).unwrap()).unwrap();
-    let message = read_table(&path).unwrap_err().to_string();
+    let read = read_table_with(&path, &ReadOptions::default());
+    let message = read.unwrap_err().to_string();
     // understood, but empty
     assert!(
         message.contains("sheet Derivatives") || message.contains("derivative"),
