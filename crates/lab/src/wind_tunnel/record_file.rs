@@ -5,7 +5,7 @@
 //! Forces are self-excited ones per unit length, N/m and N·m/m. Reading streams the file in blocks of bounded size.
 
 use super::record_format::{RecordFile, read_head, text, write_head};
-use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
+use super::records::{Record, RecordHeader, RecordSource};
 use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -46,7 +46,7 @@ impl RecordSource for RecordFile {
     /// [`Error::Io`]; [`Error::Input`] with file and line: text or NaN in place of a number, a row with more or fewer
     /// columns, a gap in time or an uneven step, another sampling frequency than stated, fewer than
     /// 64 samples.
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+    fn for_each_block(&self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
         let io = |e| Error::io(&self.path, e);
         let mut file = File::open(&self.path).map_err(io)?;
         file.seek(SeekFrom::Start(self.start)).map_err(io)?;
@@ -89,10 +89,8 @@ pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()
     write_head(header, out).map_err(io)?;
     let mut first = 0;
     record.for_each_block(&mut |block| {
-        let channels = block.motion.iter().chain(block.force);
-        let channels: Vec<&[f64]> = channels.map(Vec::as_slice).collect();
-        write_rows(out, header.sampling_hz, first, &channels).map_err(io)?;
-        first += channels.first().map_or(0, |c| c.len());
+        write_rows(out, header.sampling_hz, first, block).map_err(io)?;
+        first += block.first().map_or(0, |c| c.len());
         Ok(())
     })?;
     out.flush().map_err(io)
@@ -165,12 +163,12 @@ impl<'a> RecordRows<'a> {
         }
     }
 
-    fn pass_on(&mut self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+    fn pass_on(&mut self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
         if self.channels[0].is_empty() {
             return Ok(());
         }
-        let (motion, force) = self.channels.split_at(self.file.header.dofs.len());
-        f(RecordBlock { motion, force })?;
+        let channels: Vec<&[f64]> = self.channels.iter().map(Vec::as_slice).collect();
+        f(&channels)?;
         self.channels.iter_mut().for_each(Vec::clear);
         Ok(())
     }
