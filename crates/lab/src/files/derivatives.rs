@@ -19,6 +19,7 @@ pub use workbook_writer::{template_bytes, workbook_bytes_in};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::derivatives::notation::{Convention, StatedConvention};
 use crate::error::{Error, Result, ensure};
+use crate::files::lab::guarded;
 use std::path::Path;
 
 /// Endings of workbooks.
@@ -134,5 +135,7 @@ pub fn read_table_with(
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         wide_sheet::read(&mut book, sheet, &stem, options)
     };
-    read().map_err(|e: Error| e.in_file(path))
+    let damaged = || Err(xlsx_cells::no_workbook(&"a part that cannot be read"));
+    let read = guarded(read).unwrap_or_else(damaged);
+    read.map_err(|e: Error| e.in_file(path))
 }

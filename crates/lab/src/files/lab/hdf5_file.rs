@@ -2,7 +2,7 @@
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::columns::push_array;
-use super::guarded::guarded;
+use super::guarded;
 use crate::error::{Error, Result};
 use hdf5_pure::{AttrValue, DType, Dataset, File, FormatError, Group};
 use std::collections::HashMap;

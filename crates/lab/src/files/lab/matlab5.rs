@@ -5,7 +5,7 @@
 
 use super::channels::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
 use super::columns::push_array;
-use super::guarded::guarded;
+use super::guarded;
 use crate::error::{Error, Result, ensure};
 use matrw::{MatVariable, MatlabType};
 use std::io::Read;

@@ -260,6 +260,23 @@ fn other_formats_are_read() {
     }
 }
 
+/// The reader of the old format panics on the first part of a file.
+#[test]
+fn half_a_workbook_is_refused() {
+    let whole = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../tests/data/wide_table.xls"
+    );
+    let whole = std::fs::read(whole).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("half.xls");
+    std::fs::write(&path, &whole[..4834]).unwrap();
+    let refused = in_scanlan(&path).unwrap_err().to_string();
+    let expected =
+        "half.xls: expected a workbook (.xlsx, .xls, .ods), found a part that cannot be read";
+    assert!(refused.ends_with(expected), "{refused}");
+}
+
 /// A comma among points is one of thousands.
 #[test]
 fn commas_and_points_in_texts_are_refused() {
