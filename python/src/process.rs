@@ -77,10 +77,9 @@ pub fn process(
     };
     let work = Work::new(progress);
     let done = work.run(py, || {
-        let reading = Campaign::read(&campaign)?.load()?;
-        let warnings = reading.words(FindingSeverity::Note);
-        let mut doubts = reading.words(FindingSeverity::Doubt);
-        let raw = reading.raw;
+        let raw = Campaign::read(&campaign)?.load()?;
+        let warnings = raw.words(FindingSeverity::Note);
+        let mut doubts = raw.words(FindingSeverity::Doubt);
         let runs = raw.runs.len();
         let processed = processing::process(&raw, &options, &|done| work.tell(done, runs))?;
         let sources: Vec<&dyn RecordSource> = processed

@@ -4,8 +4,8 @@ mod virtual_campaign;
 
 use super::vocabulary::{Answer, Dof, Progress, Result, counted};
 use crate::cli::text::to_tenths_of_mm;
-use crate::wind_tunnel::RawRecording;
-use crate::wind_tunnel::campaign::{Campaign, CampaignReading};
+use crate::wind_tunnel::campaign::Campaign;
+use crate::wind_tunnel::{RawCampaign, RawRecording};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ pub(crate) fn run(command: &CampaignCommand, progress: &Progress) -> Result<Answ
 /// Reads a campaign and says what is in it.
 fn check(file: &Path, progress: &Progress) -> Result<Answer> {
     let campaign = Campaign::read(file)?;
-    let reading = progress.during("reading the recordings", || campaign.load())?;
+    let raw = progress.during("reading the recordings", || campaign.load())?;
     let recording = |r: &RawRecording| {
         json!({
             "source": r.source,
@@ -44,7 +44,7 @@ fn check(file: &Path, progress: &Progress) -> Result<Answer> {
             "channels": r.channels,
         })
     };
-    let runs = reading.raw.runs.iter().map(|run| {
+    let runs = raw.runs.iter().map(|run| {
         json!({
             "name": run.name,
             "motion": run.motion,
@@ -55,25 +55,25 @@ fn check(file: &Path, progress: &Progress) -> Result<Answer> {
         })
     });
     let value = json!({
-        "section": reading.raw.section,
-        "rig": reading.raw.rig,
+        "section": raw.section,
+        "rig": raw.rig,
         "runs": runs.collect::<Vec<_>>(),
-        "findings": reading.findings,
+        "findings": raw.findings,
     });
-    Answer::new(text(&reading), &value)
+    Answer::new(text(&raw), &value)
 }
 
-fn text(reading: &CampaignReading) -> String {
-    let rig = &reading.raw.rig;
+fn text(raw: &RawCampaign) -> String {
+    let rig = &raw.rig;
     let cells: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
     let mut text = format!(
         "{}: model of {} m × {} m, cells {}\n",
-        reading.raw.section,
+        raw.section,
         rig.model_length_m,
         to_tenths_of_mm(rig.model_width_m),
         cells.join(", ")
     );
-    for run in &reading.raw.runs {
+    for run in &raw.runs {
         let _ = writeln!(
             text,
             "  {}: {} motion, {:.3} m/s, {:.4} kg/m³",
@@ -87,14 +87,14 @@ fn text(reading: &CampaignReading) -> String {
             let _ = writeln!(text, "    {what:<9} {}", described(recording));
         }
     }
-    if let Some(run) = reading.raw.runs.first() {
+    if let Some(run) = raw.runs.first() {
         let _ = writeln!(text, "  channels: {}", run.in_wind.channels.join(", "));
     }
-    match reading.findings.len() {
+    match raw.findings.len() {
         0 => text.push_str("nothing odd found\n"),
         n => {
             let _ = writeln!(text, "{}:", counted(n, "finding"));
-            text.extend(reading.findings.iter().map(|finding| format!("  {finding}\n")));
+            text.extend(raw.findings.iter().map(|finding| format!("  {finding}\n")));
         }
     }
     text

@@ -13,7 +13,7 @@ use crate::aerodynamics::derivatives::{Derivative, TableHeader};
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::files::coefficients::named_coefficients;
-use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
+use crate::files::derivatives::{workbook_bytes_in, write_csv, write_points};
 use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
@@ -77,12 +77,11 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
-    let reading = progress.during("reading the campaign", || {
+    let raw = progress.during("reading the campaign", || {
         Campaign::read(&args.campaign)?.load()
     })?;
-    let mut notes = reading.words(FindingSeverity::Note);
-    let mut doubts = reading.words(FindingSeverity::Doubt);
-    let raw = reading.raw;
+    let mut notes = raw.words(FindingSeverity::Note);
+    let mut doubts = raw.words(FindingSeverity::Doubt);
     let total = raw.runs.len();
     let processed = progress.counting("processing", |on_done| {
         process(&raw, &options, &|done| on_done(done, total))
@@ -307,7 +306,10 @@ fn write_table(
     let mut text = Vec::new();
     write_csv(&table, &mut text).map_err(|e| Error::io(TABLE, e))?;
     out.write(TABLE, text)?;
-    out.write(workbook_name(section), workbook_bytes(&table)?)?;
+    out.write(
+        workbook_name(section),
+        workbook_bytes_in(&table, &Convention::default())?,
+    )?;
     let mut odd = of_table(&table, &Convention::default());
     odd.retain(|f| f.kind != FindingKind::Contradiction);
     Ok(odd)

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 fn digest(record: &RecordFile, whole: bool) -> Option<u64> {
     let (mut hasher, mut blocks) = (DefaultHasher::new(), 0);
     let read = record.for_each_block(&mut |block| {
-        let samples = block.motion.iter().chain(block.force).flatten();
+        let samples = block.iter().copied().flatten();
         samples.for_each(|x| x.to_bits().hash(&mut hasher));
         blocks += 1;
         match whole {

@@ -317,8 +317,10 @@ fn what_is_bluff_is_no_doubt() {
 /// Bluff decks of other tests, and one that is published.
 #[test]
 fn other_decks_give_no_hint() {
-    let published =
-        aerodeck::files::derivatives::read_table("data/bridges/iabse-2a-derivatives.csv");
+    let published = aerodeck::files::derivatives::named_table(
+        "data/bridges/iabse-2a-derivatives.csv",
+        "".as_ref(),
+    );
     let fed = |d: DerivativeTable| matrix::made_bluff(&d);
     let decks = matrix::decks().into_iter().map(fed);
     for deck in decks.chain([matrix::bluff_table(), published.unwrap()]) {

@@ -3,7 +3,7 @@
 use crate::command::{flowing, onset_of, refused, succeeds};
 use aerodeck::aerodynamics::derivatives::Derivative;
 use aerodeck::files::derivatives::embedded;
-use aerodeck::files::derivatives::read_table;
+use aerodeck::files::derivatives::named_table;
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -37,7 +37,7 @@ fn tables_are_converted_there_and_back() {
             at,
             &["derivatives", "convert", &file, &back, "--from", notation],
         );
-        let again = read_table(at.join(&back)).unwrap();
+        let again = named_table(&back, at).unwrap();
         for d in Derivative::ALL {
             for (p, q) in deck.points(d).iter().zip(again.points(d)) {
                 assert!((p.value - q.value).abs() <= 1e-12 * p.value.abs());
@@ -83,7 +83,7 @@ fn workbooks_are_written_in_any_notation() {
     convert("LN21-5200", "p.xlsx", &["--to", "polimi"]);
     assert!(convert("p.xlsx", "back.csv", &[]).contains("from PoliMi, over v_star"));
     let deck = embedded::deck("LN21-5200").unwrap();
-    let again = read_table(at.join("back.csv")).unwrap();
+    let again = named_table("back.csv", at).unwrap();
     for d in Derivative::ALL {
         for (p, q) in deck.points(d).iter().zip(again.points(d)) {
             assert!((p.value - q.value).abs() <= 1e-12 * p.value.abs());

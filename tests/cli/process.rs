@@ -74,7 +74,7 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
             .all(|e| e["standard_error"].as_f64().unwrap() > 0.0)
     );
     // the workbook is one that the program reads, and the study gives an onset
-    let table = aerodeck::files::derivatives::read_table(out.join("derivatives.csv")).unwrap();
+    let table = aerodeck::files::derivatives::named_table("derivatives.csv", &out).unwrap();
     let options = aerodeck::files::derivatives::ReadOptions {
         width_m: Some(table.width_m),
         ..Default::default()
@@ -367,9 +367,9 @@ fn a_contradiction_of_the_measurements_reaches_the_verdict() {
         "run `LN21-5200-vertical-8.18`: the mean speed is 8.983 m/s, its channel says 8.183 m/s";
     assert!(text.contains(&format!("doubt: {doubt}")), "{text}");
     let out = at.join("results");
-    let table = aerodeck::files::derivatives::read_table(out.join("derivatives.csv")).unwrap();
-    let book = out.join("AerodynamicDerivatives_LN21-5200.xlsx");
-    let book = aerodeck::files::derivatives::read_table(book).unwrap();
+    let table = aerodeck::files::derivatives::named_table("derivatives.csv", &out).unwrap();
+    let book = "AerodynamicDerivatives_LN21-5200.xlsx";
+    let book = aerodeck::files::derivatives::named_table(book, &out).unwrap();
     assert_eq!(
         (table.header.doubts.len(), &table.header.doubts),
         (2, &book.header.doubts)

@@ -34,8 +34,7 @@ fn the_onset_is_that_of_the_parameters() {
     assert!(export.bridge.as_ref().unwrap().onset.is_some());
     let (_folder, fmu) = opened(&model, &export);
     let mut slave = fmu.instantiate("bridge").unwrap();
-    slave.setup(0.0, None, None).unwrap();
-    slave.enter_initialization().unwrap();
+    slave.enter_initialization(0.0, None, None).unwrap();
     slave.exit_initialization().unwrap();
     let (_, damping) = timed(&slave, "damping_now");
     let (_, again) = timed(&slave, "damping_now");
@@ -66,8 +65,7 @@ fn the_damping_is_that_of_the_present_wind() {
         let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
         let (_folder, fmu) = opened(&model, &export);
         let mut slave = fmu.instantiate("bridge").unwrap();
-        slave.setup(0.0, None, None).unwrap();
-        slave.enter_initialization().unwrap();
+        slave.enter_initialization(0.0, None, None).unwrap();
         slave.exit_initialization().unwrap();
         let own = export.bridge.as_ref().unwrap().air_density_kg_m3;
         for density in [own, 1.6, own] {

@@ -72,8 +72,7 @@ fn a_damped_bridge_grows_as_its_eigenvalues_say() {
     ];
     for (mass, hertz, damping, coefficient) in cases {
         let mut slave = fmu.instantiate("bridge").unwrap();
-        slave.setup(0.0, None, None).unwrap();
-        slave.enter_initialization().unwrap();
+        slave.enter_initialization(0.0, None, None).unwrap();
         for d in 0..2 {
             let damper = &mut tuned.dampers.masses[d];
             (damper.mass_kg, damper.frequency_hz, damper.damping_ratio) =
@@ -91,8 +90,7 @@ fn a_damped_bridge_grows_as_its_eigenvalues_say() {
         assert!(real(&slave, "damper[1].stroke").abs() < 1e-12);
         for part in [0.5, 0.99, 1.05] {
             slave.reset().unwrap();
-            slave.setup(0.0, None, None).unwrap();
-            slave.enter_initialization().unwrap();
+            slave.enter_initialization(0.0, None, None).unwrap();
             set(&mut slave, "wind_speed", part * onset);
             for d in 0..2 {
                 let name = |of: &str| format!("damper[{}].{of}", d + 1);
@@ -151,8 +149,7 @@ fn a_damper_outside_does_what_one_inside_does() {
     });
     let start = |fmu: &Fmu| {
         let mut slave = fmu.instantiate("structure").unwrap();
-        slave.setup(0.0, None, None).unwrap();
-        slave.enter_initialization().unwrap();
+        slave.enter_initialization(0.0, None, None).unwrap();
         for mode in &plain.by_model.modes {
             let value = if mode.number == 3 { 0.5 } else { 0.0 };
             set(
@@ -216,8 +213,7 @@ fn the_onset_of_another_motion_is_followed() {
         let (model, export) = study.export(&BridgeExportOptions::default()).unwrap();
         let fmu = opened(&model, export);
         let mut slave = fmu.instantiate("bridge").unwrap();
-        slave.setup(0.0, None, None).unwrap();
-        slave.enter_initialization().unwrap();
+        slave.enter_initialization(0.0, None, None).unwrap();
         slave.exit_initialization().unwrap();
         let mut tuned = study.by_model.clone();
         // onsets at 0.22, 0.30 and 0.32 Hz

@@ -144,8 +144,7 @@ fn values_are_set_and_read_and_refused() {
         for (name, value) in values {
             slave.set(name, value).unwrap();
         }
-        slave.setup(0.0, None, None).unwrap();
-        slave.enter_initialization().unwrap();
+        slave.enter_initialization(0.0, None, None).unwrap();
         slave.exit_initialization().unwrap();
         slave
     };
@@ -200,8 +199,7 @@ fn references_that_do_not_exist_are_refused_in_both_versions() {
         let beyond = fmu.model_description().variables.len() as u32 + 7;
         let released = || {
             let mut slave = fmu.instantiate("refused").unwrap();
-            slave.setup(0.0, None, None).unwrap();
-            slave.enter_initialization().unwrap();
+            slave.enter_initialization(0.0, None, None).unwrap();
             slave
         };
         let wind = fmu.model_description().variables.iter();

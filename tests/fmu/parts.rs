@@ -81,8 +81,7 @@ fn a_structure_alone_moves_as_its_modes_do() {
     let report = fmu.check();
     assert!(report.passed() && report.ran.is_some(), "{report:#?}");
     let mut slave = fmu.instantiate("structure").unwrap();
-    slave.setup(0.0, None, None).unwrap();
-    slave.enter_initialization().unwrap();
+    slave.enter_initialization(0.0, None, None).unwrap();
     let bridge = &study.by_model;
     for mode in &bridge.modes {
         let name = format!("mode[{}].initial_coordinate", mode.number);
@@ -229,8 +228,7 @@ fn the_unit_of_all_sections_is_the_units_of_each() {
         let export = forces.packed(&Label::default(), FmiVersion::Two);
         let fmu = opened(&package(&forces.model, &runtimes(), export).unwrap());
         let mut slave = fmu.instantiate("forces").unwrap();
-        slave.setup(0.0, None, None).unwrap();
-        slave.enter_initialization().unwrap();
+        slave.enter_initialization(0.0, None, None).unwrap();
         slave.exit_initialization().unwrap();
         (fmu, slave)
     };
@@ -238,8 +236,7 @@ fn the_unit_of_all_sections_is_the_units_of_each() {
     for forces in &each {
         let (fmu, mut part) = started(forces);
         whole.reset().unwrap();
-        whole.setup(0.0, None, None).unwrap();
-        whole.enter_initialization().unwrap();
+        whole.enter_initialization(0.0, None, None).unwrap();
         whole.exit_initialization().unwrap();
         let variables = &fmu.model_description().variables;
         let named = |causality| {

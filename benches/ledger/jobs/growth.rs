@@ -13,7 +13,7 @@ use aerodeck::flutter::{OnsetSearch, find_onset, trace_modes};
 use aerodeck::identification::{Constraints, PoleSearch, TimeFit, TimeWeights, fit_records};
 use aerodeck::response::{Inputs, Stepper};
 use aerodeck::section::Dof;
-use aerodeck::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
+use aerodeck::wind_tunnel::{RecordHeader, RecordSource, Segment};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
@@ -182,7 +182,7 @@ impl RecordSource for LongRecord {
         &self.header
     }
 
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+    fn for_each_block(&self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
         const BLOCK: usize = 4096;
         let part = self.samples.div_ceil(FREQUENCIES_HZ.len());
         for first in (0..self.samples).step_by(BLOCK) {
@@ -196,10 +196,8 @@ impl RecordSource for LongRecord {
                 force[0][at] = 3.0 * sine + 0.7 * cosine;
                 force[1][at] = 0.4 * sine - 0.2 * cosine;
             }
-            f(RecordBlock {
-                motion: &motion,
-                force: &force,
-            })?;
+            let channels = motion.iter().chain(&force);
+            f(&channels.map(Vec::as_slice).collect::<Vec<_>>())?;
         }
         Ok(())
     }

@@ -30,24 +30,20 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
         .map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let (mut names, mut findings, mut left) = (Vec::new(), FmuFindings::default(), MAX_BYTES);
     for index in 0..zip.len() {
-        let mut entry = zip.by_index(index).map_err(|e| {
-            Error::input(format!("entry {index}"), "a readable entry", e.to_string())
-        })?;
-        let name = entry
-            .name()
-            .map_err(|e| Error::input(format!("entry {index}"), "a name in UTF-8", e.to_string()))?
-            .into_owned();
+        let wrong =
+            |expected: &str, e| Error::input(format!("entry {index}"), expected, format!("{e}"));
+        let entry = zip.by_index(index);
+        let mut entry = entry.map_err(|e| wrong("a readable entry", e))?;
+        let name = entry.name().map_err(|e| wrong("a name in UTF-8", e))?;
+        let name = name.into_owned();
         let inside = safe_path(&name, &mut findings)?;
         let is_plain = !entry.is_symlink();
         ensure(is_plain, &name, "a file or a folder", "a link")?;
         let method = entry.compression();
         if ![CompressionMethod::Stored, CompressionMethod::Deflated].contains(&method) {
+            let place = format!("archive, entry {name:?}");
             let expected = "compression by deflate or none";
-            findings.error(
-                format!("archive, entry {name:?}"),
-                expected,
-                method.to_string(),
-            );
+            findings.error(place, expected, method.to_string());
         }
         let target = folder.path().join(&inside);
         if entry.is_dir() {
@@ -64,26 +60,18 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, FmuFindings)>
 
 fn safe_path(name: &str, findings: &mut FmuFindings) -> Result<PathBuf> {
     if name.contains('\\') {
-        findings.error(
-            format!("archive, entry {name:?}"),
-            "forward slashes",
-            "backslashes",
-        );
+        let place = format!("archive, entry {name:?}");
+        findings.error(place, "forward slashes", "backslashes");
     }
     let name = name.replace('\\', "/");
-    let harmless = !name.starts_with('/')
+    let harmless = !name.is_empty()
+        && !name.starts_with('/')
         && !name.contains(['\0', ':'])
         && !name.split('/').any(|part| part == "..");
-    ensure(
-        harmless && !name.is_empty(),
-        format_args!("entry {name:?}"),
-        "a path inside the archive",
-        "one that leads outside",
-    )?;
-    Ok(name
-        .split('/')
-        .filter(|p| !p.is_empty() && *p != ".")
-        .collect())
+    let (place, expected) = (format_args!("entry {name:?}"), "a path inside the archive");
+    ensure(harmless, place, expected, "one that leads outside")?;
+    let parts = name.split('/');
+    Ok(parts.filter(|p| !p.is_empty() && *p != ".").collect())
 }
 
 /// The folders of `inside` below `root`, which is not made: a program that ends has removed it meanwhile, and it must

@@ -48,8 +48,6 @@ impl std::fmt::Display for Value {
 /// Attributes that a variable may take over from its declared type.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TypeAttributes {
-    /// Physical quantity.
-    pub quantity: Option<String>,
     /// Unit.
     pub unit: Option<String>,
     /// Unit for display.
@@ -97,19 +95,15 @@ impl ScalarVariable {
     /// `initial` as stated, or its default; `None` for inputs and time, which have none, and for combinations of
     /// causality and variability that are not legal (table in section 2.2.7 of the standard).
     pub(crate) fn effective_initial(&self) -> Option<Initial> {
-        self.initial.or_else(|| {
-            initial_choices(self.causality, self.variability).and_then(|(default, _)| default)
-        })
+        let choices = initial_choices(self.causality, self.variability);
+        self.initial.or(choices.and_then(|(default, _)| default))
     }
 
     /// Whether an importer may set it before initialisation ends or during the run.
     pub fn settable(&self) -> bool {
-        self.causality == Causality::Input
-            || (self.variability != Variability::Constant
-                && matches!(
-                    self.effective_initial(),
-                    Some(Initial::Exact | Initial::Approx)
-                ))
+        let initial = self.effective_initial();
+        let starts = matches!(initial, Some(Initial::Exact | Initial::Approx));
+        self.causality == Causality::Input || (self.variability != Variability::Constant && starts)
     }
 
     /// An attribute of the variable or, when it states none, of its declared type among `types`
@@ -119,18 +113,13 @@ impl ScalarVariable {
         types: &HashMap<&str, &SimpleType>,
         pick: impl Fn(&TypeAttributes) -> Option<T>,
     ) -> Option<T> {
-        pick(&self.attributes).or_else(|| {
-            let declared = types.get(self.declared_type.as_deref()?)?;
-            pick(&declared.attributes)
-        })
+        let declared = || types.get(self.declared_type.as_deref()?);
+        pick(&self.attributes).or_else(|| pick(&declared()?.attributes))
     }
 
     /// Place for findings.
     pub(super) fn place(&self) -> String {
-        format!(
-            "modelDescription.xml, line {}, variable `{}`",
-            self.line, self.name
-        )
+        format!("{FILE}, line {}, variable `{}`", self.line, self.name)
     }
 }
 
@@ -166,10 +155,10 @@ pub(super) fn initial_choices(
 pub struct UnitDefinition {
     /// Name.
     pub name: String,
-    /// Exponents of kg, m, s, A, K, mol, cd, rad, then factor and offset to the SI unit; `None` when not stated.
-    pub base: Option<([i32; 8], f64, f64)>,
-    /// Units for display, with factor and offset: `value in display unit = factor · value + offset`.
-    pub display_units: Vec<(String, f64, f64)>,
+    /// Factor to the SI unit; `None` when not stated.
+    pub factor: Option<f64>,
+    /// Units for display, with their factor: `value in display unit = factor · value + offset`.
+    pub display_units: Vec<(String, f64)>,
     /// Line in the file.
     pub line: usize,
 }
@@ -262,16 +251,12 @@ pub struct ModelDescription {
     pub model_name: String,
     /// Fingerprint that must be handed to the binary.
     pub guid: String,
-    /// What it is.
-    pub description: Option<String>,
     /// Program that made it.
     pub generation_tool: Option<String>,
     /// `flat` or `structured`.
     pub variable_naming_convention: String,
     /// Capabilities; `None` when it is not for co-simulation.
     pub co_simulation: Option<CoSimulation>,
-    /// Whether it offers model exchange.
-    pub model_exchange: bool,
     /// Units.
     pub units: Vec<UnitDefinition>,
     /// Declared types.

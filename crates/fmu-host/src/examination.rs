@@ -26,11 +26,8 @@ impl Fmu {
             Err(e) => findings.error("archive", "a binary for this machine", e.to_string()),
             Ok(_) if !running => {}
             Ok(binary) => {
-                let place = binary
-                    .strip_prefix(self.folder.path())
-                    .unwrap_or(&binary)
-                    .display()
-                    .to_string();
+                let inside = binary.strip_prefix(self.folder.path());
+                let place = inside.unwrap_or(&binary).display().to_string();
                 let before = findings.0.len();
                 library::check_symbols(&binary, self.description.is_fmi3(), &place, &mut findings);
                 if findings.0.len() == before {
@@ -56,11 +53,9 @@ impl Fmu {
         let mut seen = std::collections::HashSet::new();
         for entry in &self.entries {
             if !seen.insert(entry.to_lowercase()) {
-                findings.warning(
-                    format!("archive, entry `{entry}`"),
-                    "names that differ in more than case",
-                    "the same twice",
-                );
+                let place = format!("archive, entry `{entry}`");
+                let expected = "names that differ in more than case";
+                findings.warning(place, expected, "the same twice");
             }
         }
         let icon = match self.description.is_fmi3() {
@@ -72,12 +67,8 @@ impl Fmu {
             (icon, "an icon"),
         ] {
             if !self.entries.iter().any(|e| e == file) {
-                findings.add(
-                    FmuSeverity::Note,
-                    "archive",
-                    format!("{what} ({file})"),
-                    "none",
-                );
+                let expected = format!("{what} ({file})");
+                findings.add(FmuSeverity::Note, "archive", expected, "none");
             }
         }
     }

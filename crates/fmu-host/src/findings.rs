@@ -41,14 +41,9 @@ pub struct FmuFinding {
 
 impl std::fmt::Display for FmuFinding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "{}: {}: expected {}, found {}",
-            self.severity.name(),
-            self.place,
-            self.expected,
-            self.found
-        )
+        let (severity, place) = (self.severity.name(), &self.place);
+        let (expected, found) = (&self.expected, &self.found);
+        write!(f, "{severity}: {place}: expected {expected}, found {found}")
     }
 }
 
@@ -148,9 +143,7 @@ impl CheckReport {
 
     /// Number of findings of one severity.
     pub fn count(&self, severity: FmuSeverity) -> usize {
-        self.findings
-            .iter()
-            .filter(|f| f.severity == severity)
-            .count()
+        let of_severity = |f: &&FmuFinding| f.severity == severity;
+        self.findings.iter().filter(of_severity).count()
     }
 }

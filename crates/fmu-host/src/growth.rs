@@ -91,12 +91,9 @@ pub fn onset_by_stepping(
 ) -> Result<SteppedSearch> {
     let min = positive("speed_min_m_s", speed_min_m_s)?;
     let step = positive("communication_step_s", communication_step_s)?;
-    ensure(
-        speed_max_m_s.is_finite() && speed_max_m_s > min,
-        "speed_max_m_s",
-        format_args!("a finite number above {min}"),
-        speed_max_m_s,
-    )?;
+    let is_above = speed_max_m_s.is_finite() && speed_max_m_s > min;
+    let expected = format_args!("a finite number above {min}");
+    ensure(is_above, "speed_max_m_s", expected, speed_max_m_s)?;
     let mut run = Run::new(fmu, step)?;
     let mut below = run.growth(min)?;
     let mut above = None;
@@ -214,20 +211,21 @@ impl Run {
         self.extend(&mut samples, 64)?;
         let mut periods = FIRST_PERIODS;
         let mut last: Option<GrowthPoint> = None;
-        let released = TAU / estimate::rough_period(&samples, self.references.len());
+        let width = self.references.len();
+        let released = TAU / estimate::rough_period(&samples, width);
         while periods <= MAX_PERIODS {
-            let period = estimate::rough_period(&samples, self.references.len());
+            let period = estimate::rough_period(&samples, width);
             let mut wanted = (periods * period / self.step).ceil();
             if wanted >= MAX_STEPS as f64 && last.is_some() {
                 // near a divergence the section is nearly at rest, and its period says nothing
-                wanted = 2.0 * (samples.len() / self.references.len()) as f64;
+                wanted = 2.0 * (samples.len() / width) as f64;
             }
             if !(wanted.is_finite() && wanted < MAX_STEPS as f64) {
                 break;
             }
             self.extend(&mut samples, wanted as usize)?;
-            let moving = estimate::before_rest(&samples, self.references.len(), DIED);
-            let mut now = growth_of_samples(moving, self.references.len(), self.step)?;
+            let moving = estimate::before_rest(&samples, width, DIED);
+            let mut now = growth_of_samples(moving, width, self.step)?;
             let oscillates = now.frequency_rad_s > 0.0;
             let scale = now.growth_rate_per_s.abs().max(match oscillates {
                 true => now.frequency_rad_s,
@@ -246,13 +244,11 @@ impl Run {
             last = Some(now);
             periods *= 2.0;
         }
+        let seconds = samples.len() as f64 / width as f64 * self.step;
+        let last = last.map(|g| format!("{:.6} 1/s", g.growth_rate_per_s));
+        let last = last.unwrap_or("none".to_owned());
         Err(Error::Numerical(format!(
-            "growth at {speed:.3} m/s: no steady rate after {:.0} s; last estimate {}",
-            samples.len() as f64 / self.references.len() as f64 * self.step,
-            last.map_or("none".to_owned(), |g| format!(
-                "{:.6} 1/s",
-                g.growth_rate_per_s
-            ))
+            "growth at {speed:.3} m/s: no steady rate after {seconds:.0} s; last estimate {last}"
         )))
     }
 
@@ -285,21 +281,16 @@ impl Run {
             let margin = 0.2 * TOLERANCE * high.speed_m_s;
             let speed = guess.clamp(low.speed_m_s + margin, high.speed_m_s - margin);
             let now = self.growth(speed)?;
-            if now.growth_rate_per_s < 0.0 {
-                f_low = now.growth_rate_per_s;
-                low = now;
-                if side == -1 {
-                    f_high *= 0.5;
-                }
-                side = -1;
-            } else {
-                f_high = now.growth_rate_per_s;
-                high = now;
-                if side == 1 {
-                    f_low *= 0.5;
-                }
-                side = 1;
+            let (end, f_end, f_other, its_side) = match now.growth_rate_per_s < 0.0 {
+                true => (&mut low, &mut f_low, &mut f_high, -1),
+                false => (&mut high, &mut f_high, &mut f_low, 1),
+            };
+            *f_end = now.growth_rate_per_s;
+            *end = now;
+            if side == its_side {
+                *f_other *= 0.5;
             }
+            side = its_side;
         }
         let low_is_nearer = low.growth_rate_per_s.abs() < high.growth_rate_per_s.abs();
         Ok(if low_is_nearer { low } else { high })

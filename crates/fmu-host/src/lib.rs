@@ -11,8 +11,7 @@
 //! let fmu = Fmu::open("deck_section.fmu")?;
 //! let mut slave = fmu.instantiate("released")?;
 //! slave.set("wind_speed", &Value::Real(30.0))?;
-//! slave.setup(0.0, None, None)?;
-//! slave.enter_initialization()?;
+//! slave.enter_initialization(0.0, None, None)?;
 //! slave.exit_initialization()?;
 //! let step_s = 0.01;
 //! for i in 0..1000 {
@@ -51,7 +50,6 @@ pub use description::{
 };
 pub use findings::{CheckReport, FmuFinding, FmuSeverity, Trial};
 pub use growth::{GrowthOnset, GrowthPoint, SteppedSearch, growth_by_stepping, onset_by_stepping};
-pub use log::LogMessage;
 pub use reading_fmi3::array_element_name;
 pub use replay::{LS_REF, LS_REF_MANIFEST, ReplayedRun, replay};
 pub use slave::{FmuState, Slave};
@@ -60,8 +58,9 @@ use crate::error::{Error, Result, ensure};
 use crate::xml::Element;
 use description::FILE;
 use findings::FmuFindings;
+use library::Binary;
 pub use library::Status;
-use library::{Binary, OwnFunctions};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use tempfile::TempDir;
@@ -119,11 +118,11 @@ impl Fmu {
             .and_then(|text| Element::parse(&text))
             .map_err(|e| e.in_file(FILE))
             .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
-        let is_fmi3 = |version: &str| version.starts_with('3');
-        let is_fmi3 = root.attribute("fmiVersion").is_some_and(is_fmi3);
-        let (root, elements) = match is_fmi3 {
-            true => reading_fmi3::translated(&root, &mut findings),
-            false => (root, Vec::new()),
+        let (root, elements) = match root.attribute("fmiVersion") {
+            Some(version) if version.starts_with('3') => {
+                reading_fmi3::translated(&root, &mut findings)
+            }
+            _ => (root, Vec::new()),
         };
         let mut description = findings.description(&root);
         description.elements = elements;
@@ -170,14 +169,9 @@ impl Fmu {
 
     /// Folders below `binaries/` that hold anything, in alphabetical order.
     pub fn platforms(&self) -> Vec<String> {
-        let mut platforms: Vec<_> = self
-            .entries
-            .iter()
-            .filter_map(|e| Some(e.strip_prefix("binaries/")?.split_once('/')?.0.to_owned()))
-            .collect();
-        platforms.sort();
-        platforms.dedup();
-        platforms
+        let folder = |e: &String| Some(e.strip_prefix("binaries/")?.split_once('/')?.0.to_owned());
+        let folders: BTreeSet<String> = self.entries.iter().filter_map(folder).collect();
+        folders.into_iter().collect()
     }
 
     /// The shared library for this machine.
@@ -197,8 +191,8 @@ impl Fmu {
             .ok_or_else(|| {
                 let first = folders.first().unwrap_or(&"(this platform)");
                 let expected = format!("binaries/{first}/{identifier}.{ending}");
-                let found = match self.platforms() {
-                    none if none.is_empty() => "no binary at all".into(),
+                let found = match &self.platforms()[..] {
+                    [] => "no binary at all".to_owned(),
                     others => format!("binaries for {}", others.join(", ")),
                 };
                 Error::input("archive", expected, found).in_file(&self.path)
@@ -224,23 +218,6 @@ impl Fmu {
         Slave::new(&self.load()?, name, guid, false)
     }
 
-    /// What the binary says of itself: the platform of its types, `default` (FMI 3.0 knows no other), and the version of the standard,
-    /// `2.0` or one that begins with `3.`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when there is no binary for this machine or it does not load.
-    pub(crate) fn versions(&self) -> Result<(String, String)> {
-        let loaded = self.load()?;
-        // SAFETY: both take nothing and answer with a constant C string
-        Ok(unsafe {
-            let platform = match &loaded.own {
-                OwnFunctions::Two(own) => log::text((own.get_types_platform)()),
-                OwnFunctions::Three(_) => "default".to_owned(),
-            };
-            (platform, log::text((loaded.shared.get_version)()))
-        })
-    }
-
     /// The binary, loaded once.
     fn load(&self) -> Result<Arc<Binary>> {
         if let Some(loaded) = self.loaded.get() {
@@ -263,11 +240,8 @@ fn decoded(bytes: Vec<u8>) -> Result<String> {
         return Ok(bytes.into_iter().map(char::from).collect());
     }
     String::from_utf8(bytes).map_err(|e| {
-        Error::input(
-            format!("byte {}", e.utf8_error().valid_up_to()),
-            "UTF-8 text",
-            "other bytes",
-        )
+        let place = format!("byte {}", e.utf8_error().valid_up_to());
+        Error::input(place, "UTF-8 text", "other bytes")
     })
 }
 

@@ -1,6 +1,6 @@
 //! Messages of a running FMU, collected.
 
-use super::library::{Int, Status, Text};
+use super::library::{Int, Text};
 use aerodeck_unit::fmi2::types::fmi2CallbackLogger;
 use std::ffi::{CStr, c_void};
 use std::sync::{Mutex, MutexGuard};
@@ -8,28 +8,12 @@ use std::sync::{Mutex, MutexGuard};
 /// Messages kept; a chatty FMU must not fill the memory.
 const KEPT: usize = 1000;
 
-/// A message of the FMU.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LogMessage {
-    /// Status it was logged with.
-    pub status: Status,
-    /// Category.
-    pub category: String,
-    /// Text. Where the FMU passed arguments for its format string, the format itself stands here.
-    pub text: String,
-}
-
-impl std::fmt::Display for LogMessage {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "[{}] {}", self.category, self.text)
-    }
-}
-
-/// The book of one instance. FMUs may log from any thread.
-pub(super) type LogBook = Mutex<Vec<LogMessage>>;
+/// The messages of one instance, each behind its category. FMUs may log from any thread. Where the FMU passed arguments for its format
+/// string, the format itself stands here.
+pub(super) type LogBook = Mutex<Vec<String>>;
 
 /// The messages of a book.
-pub(super) fn messages_of(book: &LogBook) -> MutexGuard<'_, Vec<LogMessage>> {
+pub(super) fn messages_of(book: &LogBook) -> MutexGuard<'_, Vec<String>> {
     book.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
@@ -57,7 +41,7 @@ unsafe extern "C" fn collect(
 /// The logger of FMI 3.0.
 pub(super) unsafe extern "C" fn collect_plain(
     environment: *mut c_void,
-    status: Int,
+    _status: Int,
     category: Text,
     message: Text,
 ) {
@@ -67,15 +51,11 @@ pub(super) unsafe extern "C" fn collect_plain(
     };
     let mut messages = messages_of(book);
     if messages.len() < KEPT {
-        messages.push(LogMessage {
-            status: Status::from_code(status),
-            // SAFETY: C strings or null, as the standard has it
-            category: unsafe { text(category) },
-            // SAFETY: a C string, or null, that lives through the call; doubled are the signs of the format (`%%`) and of references (`##`)
-            text: unsafe { text(message) }
-                .replace("%%", "%")
-                .replace("##", "#"),
-        });
+        // SAFETY: C strings or null, as the standard has it, that live through the call
+        let (category, message) = unsafe { (text(category), text(message)) };
+        // doubled are the signs of the format and of references
+        let message = message.replace("%%", "%").replace("##", "#");
+        messages.push(format!("[{category}] {message}"));
     }
 }
 
@@ -122,9 +102,7 @@ mod tests {
             );
         }
         let messages = std::mem::take(&mut *messages_of(&book));
-        assert_eq!(messages[0].status, Status::Error);
-        assert_eq!(messages[0].to_string(), "[logStatusError] 100 % of %s, #");
-        assert_eq!(messages[1].to_string(), "[] ");
-        assert_eq!(*messages_of(&book), []);
+        assert_eq!(messages, ["[logStatusError] 100 % of %s, #", "[] "]);
+        assert!(messages_of(&book).is_empty());
     }
 }

@@ -41,12 +41,10 @@ impl FmuFindings {
             fmi_version: self.required(root, "fmiVersion"),
             model_name: self.required(root, "modelName"),
             guid: self.required(root, "guid"),
-            description: text(root, "description"),
             generation_tool: text(root, "generationTool"),
             variable_naming_convention: text(root, "variableNamingConvention")
                 .unwrap_or_else(|| "flat".into()),
             co_simulation: root.child("CoSimulation").map(|e| self.co_simulation(e)),
-            model_exchange: root.child("ModelExchange").is_some(),
             units: below("UnitDefinitions", "Unit")
                 .map(|e| self.unit(e))
                 .collect(),
@@ -77,16 +75,18 @@ impl FmuFindings {
         let mut last = 0;
         for child in &root.children {
             match ROOT_CHILDREN.iter().position(|n| *n == child.name) {
-                None => self.error(
-                    place(child),
-                    "an element of the FMI 2.0 schema",
-                    tag(&child.name),
-                ),
-                Some(position) if position < last => self.error(
-                    place(child),
-                    format!("{} before {}", tag(&child.name), tag(ROOT_CHILDREN[last])),
-                    "it after that",
-                ),
+                None => {
+                    let expected = "an element of the FMI 2.0 schema";
+                    self.error(place(child), expected, tag(&child.name));
+                }
+                Some(position) if position < last => {
+                    let (own, other) = (tag(&child.name), tag(ROOT_CHILDREN[last]));
+                    self.error(
+                        place(child),
+                        format!("{own} before {other}"),
+                        "it after that",
+                    );
+                }
                 Some(position) => last = position,
             }
         }
@@ -116,18 +116,13 @@ impl FmuFindings {
 
     fn parsed<T: FromStr>(&mut self, e: &Element, name: &str, what: &str) -> Option<T> {
         let value = e.attribute(name)?.trim();
-        value
-            .parse()
-            .map_err(|_| self.not_a(e, name, what, value))
-            .ok()
+        let parsed = value.parse();
+        parsed.map_err(|_| self.not_a(e, name, what, value)).ok()
     }
 
     fn not_a(&mut self, e: &Element, name: &str, what: &str, found: &str) {
-        self.error(
-            format!("{}, attribute `{name}`", place(e)),
-            what,
-            format!("`{found}`"),
-        );
+        let place = format!("{}, attribute `{name}`", place(e));
+        self.error(place, what, format!("`{found}`"));
     }
 
     /// A finite number. `INF` and `NaN` are spellings of XML Schema; the standard forbids both.
@@ -193,30 +188,28 @@ impl FmuFindings {
     }
 
     fn unit(&mut self, e: &Element) -> UnitDefinition {
-        let base = e.child("BaseUnit").map(|b| {
-            let exponents = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"]
-                .map(|n| self.parsed(b, n, "a whole number").unwrap_or(0));
-            (
-                exponents,
-                self.real(b, "factor").unwrap_or(1.0),
-                self.real(b, "offset").unwrap_or(0.0),
-            )
+        let factor = e.child("BaseUnit").map(|b| {
+            for exponent in ["kg", "m", "s", "A", "K", "mol", "cd", "rad"] {
+                self.parsed::<i32>(b, exponent, "a whole number");
+            }
+            self.factor(b)
         });
         UnitDefinition {
             name: self.required(e, "name"),
-            base,
+            factor,
             display_units: e
                 .children_named("DisplayUnit")
-                .map(|d| {
-                    (
-                        self.required(d, "name"),
-                        self.real(d, "factor").unwrap_or(1.0),
-                        self.real(d, "offset").unwrap_or(0.0),
-                    )
-                })
+                .map(|d| (self.required(d, "name"), self.factor(d)))
                 .collect(),
             line: e.line,
         }
+    }
+
+    /// The factor of a conversion, of which the offset must be a number too.
+    fn factor(&mut self, e: &Element) -> f64 {
+        let factor = self.real(e, "factor");
+        self.real(e, "offset");
+        factor.unwrap_or(1.0)
     }
 
     fn simple_type(&mut self, e: &Element) -> Option<SimpleType> {
@@ -231,15 +224,15 @@ impl FmuFindings {
     }
 
     fn typed_child<'e>(&mut self, e: &'e Element) -> Option<(VariableType, &'e Element)> {
-        let found = [
+        let kinds = [
             ("Real", VariableType::Real),
             ("Integer", VariableType::Integer),
             ("Boolean", VariableType::Boolean),
             ("String", VariableType::String),
             ("Enumeration", VariableType::Enumeration),
-        ]
-        .into_iter()
-        .find_map(|(name, kind)| e.child(name).map(|c| (kind, c)));
+        ];
+        let mut kinds = kinds.into_iter();
+        let found = kinds.find_map(|(name, kind)| Some((kind, e.child(name)?)));
         if found.is_none() {
             let expected = "one of Real, Integer, Boolean, String, Enumeration";
             self.error(place(e), expected, "none");
@@ -249,7 +242,6 @@ impl FmuFindings {
 
     fn type_attributes(&mut self, e: &Element) -> TypeAttributes {
         TypeAttributes {
-            quantity: text(e, "quantity"),
             unit: text(e, "unit"),
             display_unit: text(e, "displayUnit"),
             min: self.real(e, "min"),
@@ -284,9 +276,10 @@ impl FmuFindings {
     fn start(&mut self, e: &Element, kind: VariableType) -> Option<Value> {
         match kind {
             VariableType::Real => self.real(e, "start").map(Value::Real),
-            VariableType::Integer | VariableType::Enumeration => self
-                .parsed(e, "start", "a whole number")
-                .map(Value::Integer),
+            VariableType::Integer | VariableType::Enumeration => {
+                let whole = self.parsed(e, "start", "a whole number");
+                whole.map(Value::Integer)
+            }
             VariableType::Boolean => self.boolean(e, "start").map(Value::Boolean),
             VariableType::String => text(e, "start").map(Value::String),
         }
@@ -294,21 +287,18 @@ impl FmuFindings {
 
     fn unknown(&mut self, e: &Element) -> Unknown {
         self.required(e, "index");
-        let dependencies = e.attribute("dependencies").map(|list| {
-            list.split_whitespace()
-                .filter_map(|word| {
-                    word.parse()
-                        .map_err(|_| self.not_a(e, "dependencies", "indices", word))
-                        .ok()
-                })
-                .collect()
-        });
+        let mut index = |word: &str| {
+            let index = word.parse();
+            index
+                .map_err(|_| self.not_a(e, "dependencies", "indices", word))
+                .ok()
+        };
+        let words = |name: &str| e.attribute(name).map(str::split_whitespace);
+        let dependencies = words("dependencies").map(|list| list.filter_map(&mut index).collect());
         Unknown {
-            index: self.parsed(e, "index", "an index").unwrap_or(0),
             dependencies,
-            kinds: e
-                .attribute("dependenciesKind")
-                .map(|list| list.split_whitespace().map(str::to_owned).collect()),
+            kinds: words("dependenciesKind").map(|list| list.map(str::to_owned).collect()),
+            index: self.parsed(e, "index", "an index").unwrap_or(0),
             line: e.line,
         }
     }
@@ -323,9 +313,7 @@ fn tag(name: &str) -> String {
 }
 
 fn place(e: &Element) -> String {
-    let name = e
-        .attribute("name")
-        .map(|n| format!(" `{n}`"))
-        .unwrap_or_default();
+    let name = e.attribute("name").map(|n| format!(" `{n}`"));
+    let name = name.unwrap_or_default();
     format!("{FILE}, line {}, {}{name}", e.line, e.name)
 }

@@ -51,7 +51,6 @@ pub(super) fn translated(
     root: &Element,
     findings: &mut FmuFindings,
 ) -> (Element, Vec<ArrayElement>) {
-    let mut t = VariableIndex::default();
     let mut described = like(root, &root.name);
     for (name, value) in &root.attributes {
         let name = match name.as_str() {
@@ -62,15 +61,15 @@ pub(super) fn translated(
     }
     let variables = root.child("ModelVariables");
     let all = variables.map(|v| v.children.as_slice()).unwrap_or_default();
-    t.structural(all);
+    let mut t = VariableIndex {
+        sizes: all.iter().filter_map(structural).collect(),
+        ..VariableIndex::default()
+    };
     let sizes: Vec<Option<usize>> = all.iter().map(|v| t.place(v, findings)).collect();
-    let mut list = variables.map(|v| like(v, &v.name));
-    for (variable, size) in all.iter().zip(sizes) {
-        let made = t.variable(variable, size);
-        if let Some(list) = &mut list {
-            list.children.extend(made);
-        }
-    }
+    let mut list = variables.map(|list| {
+        let made = all.iter().zip(sizes);
+        like(list, &list.name).containing(made.flat_map(|(v, size)| t.variable(v, size)))
+    });
     for child in &root.children {
         match child.name.as_str() {
             "ModelExchange" | "CoSimulation" => described.children.push(capabilities(child)),
@@ -147,19 +146,14 @@ struct VariableIndex {
     sizes: HashMap<String, usize>,
 }
 
-impl VariableIndex {
-    fn structural(&mut self, variables: &[Element]) {
-        for v in variables {
-            let size = v.attribute("start").and_then(|s| s.trim().parse().ok());
-            if v.attribute("causality") == Some("structuralParameter")
-                && v.attribute("valueReference").is_some()
-                && let Some(size) = size
-            {
-                self.sizes.insert(reference(v).to_owned(), size);
-            }
-        }
-    }
+/// Value reference and start value of a structural parameter.
+fn structural(v: &Element) -> Option<(String, usize)> {
+    let reference = v.attribute("valueReference")?.trim().to_owned();
+    let size = v.attribute("start")?.trim().parse().ok()?;
+    (v.attribute("causality")? == "structuralParameter").then_some((reference, size))
+}
 
+impl VariableIndex {
     /// Number of elements; `None` for a variable that is no array.
     fn size(&self, v: &Element, findings: &mut FmuFindings) -> Option<usize> {
         let mut dimensions = v.children_named("Dimension").peekable();
@@ -172,11 +166,10 @@ impl VariableIndex {
         let size = dimensions.try_fold(1_usize, |product, d| product.checked_mul(of(d)?));
         let size = size.filter(|size| self.placed.saturating_add(*size) <= MAX_ELEMENTS);
         if size.is_none() {
-            findings.error(
-                format!("{FILE}, line {}, {}", v.line, v.name),
-                format!("dimensions that are known, at most {MAX_ELEMENTS} elements in all"),
-                "others",
-            );
+            let place = format!("{FILE}, line {}, {}", v.line, v.name);
+            let expected =
+                format!("dimensions that are known, at most {MAX_ELEMENTS} elements in all");
+            findings.error(place, expected, "others");
         }
         Some(size.unwrap_or(0))
     }
@@ -192,11 +185,9 @@ impl VariableIndex {
         let size = dimension.unwrap_or(1);
         let place = (self.placed + 1, size);
         if let Some(before) = self.indices.insert(reference, place) {
-            findings.error(
-                format!("{FILE}, line {}, {}", v.line, v.name),
-                "a value reference of its own",
-                format!("that of variable {}", before.0),
-            );
+            let place = format!("{FILE}, line {}, {}", v.line, v.name);
+            let found = format!("that of variable {}", before.0);
+            findings.error(place, "a value reference of its own", found);
         }
         self.placed += size;
         dimension
@@ -265,15 +256,10 @@ impl VariableIndex {
             }
         }
         if v.attribute("variability").is_none() {
-            let causality = v.attribute("causality");
-            let fixed = matches!(
-                causality,
-                Some("parameter" | "calculatedParameter" | "structuralParameter")
-            );
-            let variability = match v.name.starts_with("Float") {
-                _ if fixed => "fixed",
-                true => "continuous",
-                false => "discrete",
+            let variability = match v.attribute("causality") {
+                Some("parameter" | "calculatedParameter" | "structuralParameter") => "fixed",
+                _ if v.name.starts_with("Float") => "continuous",
+                _ => "discrete",
             };
             scalar = scalar.with("variability", variability);
         }
@@ -285,17 +271,15 @@ impl VariableIndex {
         let list = |from: &str, to: &str| {
             let mut unknowns: Vec<(usize, Element)> = Vec::new();
             for e in of.children_named(from) {
-                let Some((first, size)) = self.indices.get(reference(e)) else {
-                    continue;
-                };
-                for element in 0..*size {
-                    let mut unknown = like(e, "Unknown").with("index", first + element);
-                    if element == 0 {
-                        unknown = self.dependencies(e, unknown);
-                    } else {
-                        unknown = unknown.with("dependencies", "");
-                    }
-                    unknowns.push((first + element, unknown));
+                let place = self.indices.get(reference(e)).copied();
+                let (first, size) = place.unwrap_or_default();
+                for index in first..first + size {
+                    let unknown = like(e, "Unknown").with("index", index);
+                    let unknown = match index == first {
+                        true => self.dependencies(e, unknown),
+                        false => unknown.with("dependencies", ""),
+                    };
+                    unknowns.push((index, unknown));
                 }
             }
             unknowns.sort_by_key(|(index, _)| *index);
@@ -312,9 +296,8 @@ impl VariableIndex {
         let Some(list) = of.attribute("dependencies") else {
             return unknown;
         };
-        let kinds: Option<Vec<&str>> = of
-            .attribute("dependenciesKind")
-            .map(|k| k.split_whitespace().collect());
+        let kinds = of.attribute("dependenciesKind");
+        let kinds: Option<Vec<&str>> = kinds.map(|k| k.split_whitespace().collect());
         let mut on: Vec<(usize, Option<&str>)> = Vec::new();
         for (place, reference) in list.split_whitespace().enumerate() {
             let kind = kinds.as_ref().and_then(|k| k.get(place).copied());
@@ -351,10 +334,10 @@ pub fn array_element_name(array: &str, element: Option<usize>) -> String {
 
 fn starts(v: &Element) -> Vec<String> {
     if v.name == "String" {
-        let each = v.children_named("Start");
-        return each
-            .filter_map(|s| s.attribute("value").map(str::to_owned))
-            .collect();
+        let each = v
+            .children_named("Start")
+            .filter_map(|s| s.attribute("value"));
+        return each.map(str::to_owned).collect();
     }
     let list = v.attribute("start").unwrap_or("");
     list.split_whitespace().map(str::to_owned).collect()

@@ -92,11 +92,8 @@ fn referred<'e>(fmu: &Fmu, element: &'e Element) -> Result<&'e str> {
     }
     let place = format!("{LS_REF}, line {}, {}", element.line, element.name);
     let found = format!("`{name}`");
-    Err(Error::input(
-        place,
-        "`source`, a file of the archive",
-        found,
-    ))
+    let expected = "`source`, a file of the archive";
+    Err(Error::input(place, expected, found))
 }
 
 /// The text of a file in the folder of the files.
@@ -117,7 +114,10 @@ fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> 
     let references = read("References")?
         .ok_or_else(|| Error::input(file, "<References> of each experiment", "none"))?;
     let expected = table(fmu, references)?;
-    let stimuli = read("Stimuli")?.map(|of| table(fmu, of)).transpose()?;
+    let stimuli = match read("Stimuli")? {
+        Some(of) => table(fmu, of)?,
+        None => ValueTable::default(),
+    };
     let values = match read("Parameters")? {
         Some(of) => parameters(&element(fmu, of, of)?).map_err(|e| e.in_file(of))?,
         None => Vec::new(),
@@ -125,18 +125,12 @@ fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> 
     let times = times(fmu, experiment)?;
     // before a run of as many steps as may be
     let rows = times.steps() + 1;
-    ensure(
-        expected.names.len() > 1 && expected.rows.len() == rows,
-        "<References>",
-        format_args!("outputs beside the time, in {rows} rows"),
-        format_args!(
-            "{} outputs, {} rows",
-            expected.names.len() - 1,
-            expected.rows.len()
-        ),
-    )
-    .map_err(|e| e.in_file(file))?;
-    let found = in_new_instance(fmu, &times, values, stimuli.as_ref(), &expected)?;
+    let (outputs, found) = (expected.names.len() - 1, expected.rows.len());
+    let wanted = format_args!("outputs beside the time, in {rows} rows");
+    let fits = outputs > 0 && found == rows;
+    let found = format_args!("{outputs} outputs, {found} rows");
+    ensure(fits, "<References>", wanted, found).map_err(|e| e.in_file(file))?;
+    let found = in_new_instance(fmu, &times, values, &stimuli, &expected)?;
     let found = compared(&expected, &found).map_err(|e| e.in_file(file))?;
     Ok(ReplayedRun {
         file: file.to_owned(),
@@ -147,9 +141,8 @@ fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> 
 
 /// Of the latest draft, or of the one before, where the times are the experiment's own.
 fn times(fmu: &Fmu, experiment: &Element) -> Result<Times> {
-    let of = experiment
-        .child("TransientSimulation")
-        .unwrap_or(experiment);
+    let simulation = experiment.child("TransientSimulation");
+    let of = simulation.unwrap_or(experiment);
     let number = |name: &str| of.attribute(name).and_then(|text| text.trim().parse().ok());
     let stated = DefaultExperiment {
         start_time: number("startTime"),
@@ -171,11 +164,8 @@ fn parameters(root: &Element) -> Result<Vec<(String, Value)>> {
         let (Some(name), Some(number)) = (parameter.attribute("name"), number) else {
             let name = parameter.attribute("name").unwrap_or_default();
             let place = format!("line {}, parameter `{name}`", parameter.line);
-            return Err(Error::input(
-                place,
-                "a name, and a `Real` with its `value`",
-                "none",
-            ));
+            let expected = "a name, and a `Real` with its `value`";
+            return Err(Error::input(place, expected, "none"));
         };
         found.push((name.to_owned(), Value::Real(number)));
     }
@@ -191,10 +181,7 @@ fn table(fmu: &Fmu, name: &str) -> Result<ValueTable> {
     };
     let head = lines.next().map_or("", |(_, head)| head);
     let names = split(head);
-    if names
-        .first()
-        .is_none_or(|first| !first.eq_ignore_ascii_case("time"))
-    {
+    if !names[0].eq_ignore_ascii_case("time") {
         return Err(refused(0, "`time` as the first column", head));
     }
     let mut rows = Vec::new();
@@ -226,32 +213,29 @@ fn in_new_instance(
     fmu: &Fmu,
     times: &Times,
     mut values: Vec<(String, Value)>,
-    stimuli: Option<&ValueTable>,
+    stimuli: &ValueTable,
     expected: &ValueTable,
 ) -> Result<ValueTable> {
     let d = fmu.model_description();
     let real = |name: &String| match find(d, name)? {
         v if v.kind == VariableType::Real => Ok(v),
-        _ => Err(Error::input(
-            format!("variable `{name}`"),
-            "a real number",
-            "another type",
-        )),
+        _ => {
+            let place = format!("variable `{name}`");
+            Err(Error::input(place, "a real number", "another type"))
+        }
     };
     let reals = |names: &[String]| names.iter().map(real).collect::<Result<Vec<_>>>();
     let record = reals(&expected.names[1..])?;
-    let of_inputs = stimuli.map_or(&[][..], |s| &s.names[1..]);
-    let references: Vec<u32> = reals(of_inputs)?
-        .iter()
-        .map(|v| v.value_reference)
-        .collect();
-    if let Some(first) = stimuli.and_then(|s| s.rows.first()) {
+    let of_inputs = stimuli.names.get(1..).unwrap_or_default();
+    let inputs = reals(of_inputs)?.into_iter();
+    let references: Vec<u32> = inputs.map(|v| v.value_reference).collect();
+    if let Some(first) = stimuli.rows.first() {
         let initial = of_inputs.iter().zip(&first[1..]);
         values.extend(initial.map(|(name, x)| (name.clone(), Value::Real(*x))));
     }
     let mut slave = fmu.instantiate(&d.model_name)?;
     start(&mut slave, times, &values)?;
-    let mut rows = stimuli.map_or(&[][..], |s| &s.rows[..]).iter().peekable();
+    let mut rows = stimuli.rows.iter().peekable();
     let mut now: Option<&Vec<f64>> = None;
     let before = |slave: &mut Slave, time: f64| {
         // the last row that is not later
@@ -294,10 +278,9 @@ fn compared(expected: &ValueTable, found: &ValueTable) -> Result<ReplayedRun> {
             let difference = (said[column] - is[column]).abs() / scale;
             // what is no number differs from everything
             if difference > worst.difference || difference.is_nan() {
-                worst.difference = if difference.is_nan() {
-                    f64::INFINITY
-                } else {
-                    difference
+                worst.difference = match difference.is_nan() {
+                    true => f64::INFINITY,
+                    false => difference,
                 };
                 variable.clone_into(&mut worst.variable);
                 worst.time_s = said[0];

@@ -7,7 +7,7 @@ use super::slave::{Slave, find};
 use crate::error::{Result, ensure, positive};
 
 /// Recorded variables: Reals, and the rest as numbers (false 0, true 1).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct ValueTable {
     /// `time`, then the variables.
     pub names: Vec<String>,
@@ -47,6 +47,12 @@ impl Times {
     pub(super) fn at(&self, point: usize) -> f64 {
         self.start + point as f64 * self.step
     }
+
+    /// Brings an instance into the initialisation mode.
+    pub(super) fn initialise(&self, slave: &mut Slave) -> Result<()> {
+        let tolerance = slave.model_description().default_experiment.tolerance;
+        slave.enter_initialization(self.start, Some(self.stop), tolerance)
+    }
 }
 
 /// Sets values and initialises: parameters and start values before the initialisation, inputs in it.
@@ -54,20 +60,16 @@ pub(super) fn start(slave: &mut Slave, times: &Times, values: &[(String, Value)]
     let mut inputs = Vec::new();
     for (name, value) in values {
         let variable = find(slave.model_description(), name)?;
-        ensure(
-            variable.settable(),
-            format_args!("variable `{name}`"),
-            "one that can be set",
-            format!("{:?} {:?}", variable.causality, variable.variability).to_lowercase(),
-        )?;
+        let place = format_args!("variable `{name}`");
+        let found = format!("{:?} {:?}", variable.causality, variable.variability);
+        let expected = "one that can be set";
+        ensure(variable.settable(), place, expected, found.to_lowercase())?;
         match variable.causality {
             Causality::Input => inputs.push((name, value)),
             _ => slave.set(name, value)?,
         }
     }
-    let tolerance = slave.model_description().default_experiment.tolerance;
-    slave.setup(times.start, Some(times.stop), tolerance)?;
-    slave.enter_initialization()?;
+    times.initialise(slave)?;
     for (name, value) in inputs {
         slave.set(name, value)?;
     }

@@ -8,7 +8,7 @@ pub use states::FmuState;
 
 use super::description::{ModelDescription, ScalarVariable};
 use super::library::{Binary, Component, Int, OwnFunctions, Status, Text, Truth, spelt};
-use super::log::{LogBook, LogMessage, collect_plain, logger, messages_of};
+use super::log::{LogBook, collect_plain, logger, messages_of};
 use crate::error::{Error, Result};
 use aerodeck_unit::fmi2::types::fmi2CallbackFunctions;
 use std::cell::Cell;
@@ -40,8 +40,6 @@ pub struct Slave {
     core: Rc<FmuComponent>,
     /// Of FMI 3.0, what each number was set to last, at first its start value: an element is set along with its whole array.
     kept: Vec<f64>,
-    /// Start and stop, s, and tolerance, which FMI 3.0 is told at the initialisation.
-    experiment: (f64, Option<f64>, Option<f64>),
     /// Whether the initialisation has begun, so that all numbers can be read.
     begun: bool,
 }
@@ -64,10 +62,8 @@ impl Slave {
         let texts = [c_name.as_ptr(), c_guid.as_ptr(), c_resources.as_ptr()];
         let component = instantiated(&binary.own, texts, &callbacks, logging);
         if component.is_null() {
-            return Err(Error::Numerical(with_log(
-                format!("`{name}` was not instantiated"),
-                &messages_of(&log),
-            )));
+            let text = format!("`{name}` was not instantiated");
+            return Err(with_log(text, &log));
         }
         Ok(Self {
             core: Rc::new(FmuComponent {
@@ -78,7 +74,6 @@ impl Slave {
                 log,
             }),
             kept: binary.description.start_values(),
-            experiment: (0.0, None, None),
             begun: false,
         })
     }
@@ -88,13 +83,8 @@ impl Slave {
         &self.core.binary.description
     }
 
-    /// Messages logged so far.
-    pub fn log(&self) -> Vec<LogMessage> {
-        messages_of(&self.core.log).clone()
-    }
-
     /// Messages logged so far, which are then forgotten.
-    pub(crate) fn take_log(&self) -> Vec<LogMessage> {
+    pub(crate) fn take_log(&self) -> Vec<String> {
         std::mem::take(&mut *messages_of(&self.core.log))
     }
 
@@ -124,48 +114,28 @@ impl Slave {
     }
 
     fn failed(&self, suffix: &str, status: Status) -> Error {
-        let name = self.name_of(suffix);
-        Error::Numerical(with_log(
-            format!("{name} answered {status:?}"),
-            &messages_of(&self.core.log),
-        ))
+        let text = format!("{} answered {status:?}", self.name_of(suffix));
+        with_log(text, &self.core.log)
     }
 
-    /// `fmi2SetupExperiment`: times in s. In FMI 3.0 they go along with the next call.
+    /// `fmi2SetupExperiment` and `fmi2EnterInitializationMode`, which are one in FMI 3.0: times in s.
     ///
     /// # Errors
     /// [`Error::Numerical`] with status and log when the answer is neither OK nor a warning.
-    pub fn setup(
+    pub fn enter_initialization(
         &mut self,
         start_s: f64,
         stop_s: Option<f64>,
         tolerance: Option<f64>,
     ) -> Result<()> {
-        let own = match &self.core.binary.own {
-            OwnFunctions::Two(own) => own,
-            OwnFunctions::Three(_) => {
-                self.experiment = (start_s, stop_s, tolerance);
-                return Ok(());
-            }
-        };
         let ((with_tolerance, tolerance), (with_stop, stop)) = (stated(tolerance), stated(stop_s));
-        // SAFETY: plain values; so for every call below, with slices of the stated length
-        self.good("SetupExperiment", |_, c| unsafe {
-            (own.setup_experiment)(
-                c,
-                with_tolerance.into(),
-                tolerance,
-                start_s,
-                with_stop.into(),
-                stop,
-            )
-        })
-    }
-
-    /// `fmi2EnterInitializationMode`.
-    pub fn enter_initialization(&mut self) -> Result<()> {
-        let (start, stop, tolerance) = self.experiment;
-        let ((with_tolerance, tolerance), (with_stop, stop)) = (stated(tolerance), stated(stop));
+        if let OwnFunctions::Two(own) = &self.core.binary.own {
+            let (limited, ends) = (with_tolerance.into(), with_stop.into());
+            // SAFETY: plain values; so for every call below, with slices of the stated length
+            self.good("SetupExperiment", |_, c| unsafe {
+                (own.setup_experiment)(c, limited, tolerance, start_s, ends, stop)
+            })?;
+        }
         // SAFETY: the component lives; plain values
         self.good("EnterInitializationMode", |f, c| unsafe {
             match &f.own {
@@ -174,7 +144,7 @@ impl Slave {
                     c,
                     with_tolerance,
                     tolerance,
-                    start,
+                    start_s,
                     with_stop,
                     stop,
                 ),
@@ -211,20 +181,20 @@ impl Slave {
         if status.is_good() && (end != 0 || early != 0) {
             return Ok(Status::Discard);
         }
-        if status.is_good() || status == Status::Discard {
-            Ok(status)
-        } else {
-            Err(self.failed("DoStep", status))
+        match status.is_good() || status == Status::Discard {
+            true => Ok(status),
+            false => Err(self.failed("DoStep", status)),
         }
     }
 
     /// As [`Slave::do_step`], where a step that is discarded is an error.
     pub(super) fn whole_step(&mut self, time_s: f64, step_s: f64) -> Result<()> {
         match self.do_step(time_s, step_s)? {
-            Status::Discard => Err(Error::Numerical(format!(
-                "{} discarded the step from {time_s} s over {step_s} s",
-                self.name_of("DoStep")
-            ))),
+            Status::Discard => {
+                let name = self.name_of("DoStep");
+                let text = format!("{name} discarded the step from {time_s} s over {step_s} s");
+                Err(Error::Numerical(text))
+            }
             _ => Ok(()),
         }
     }
@@ -240,7 +210,7 @@ impl Slave {
         // SAFETY: the component lives; plain values
         self.good("Reset", |f, c| unsafe { (f.shared.reset)(c) })?;
         self.kept = self.model_description().start_values();
-        (self.experiment, self.begun) = ((0.0, None, None), false);
+        self.begun = false;
         Ok(())
     }
 }
@@ -296,27 +266,22 @@ fn instantiated(
 /// The variable of that name.
 pub(super) fn find<'a>(d: &'a ModelDescription, name: &str) -> Result<&'a ScalarVariable> {
     d.variable(name).ok_or_else(|| {
-        let some: Vec<_> = d
-            .variables
-            .iter()
-            .take(40)
-            .map(|v| v.name.as_str())
-            .collect();
-        Error::input(
-            "variable",
-            format!("one of {}", some.join(", ")),
-            format!("`{name}`"),
-        )
+        let some = d.variables.iter().take(40);
+        let some: Vec<_> = some.map(|v| v.name.as_str()).collect();
+        let expected = format!("one of {}", some.join(", "));
+        Error::input("variable", expected, format!("`{name}`"))
     })
 }
 
-fn with_log(mut text: String, messages: &[LogMessage]) -> String {
+/// The error of this text and the last messages.
+fn with_log(mut text: String, log: &LogBook) -> Error {
+    let messages = messages_of(log);
     let last = messages.len().saturating_sub(3);
     for message in &messages[last..] {
         text.push_str("; it logged: ");
-        text.push_str(&message.to_string());
+        text.push_str(message);
     }
-    text
+    Error::Numerical(text)
 }
 
 // of the C library that Rust's standard library links

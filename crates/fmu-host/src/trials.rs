@@ -4,9 +4,10 @@ use super::description::{
     Causality, DefaultExperiment, FILE, Initial, ScalarVariable, Value, VariableType,
 };
 use super::findings::{FmuFindings, Trial};
+use super::library::OwnFunctions;
 use super::simulation::{Times, ValueTable, run as step_through, start};
 use super::slave::Slave;
-use super::{Fmu, LogMessage};
+use super::{Fmu, log};
 use crate::error::{Error, Result, ensure};
 
 /// Most communication steps of a trial.
@@ -54,8 +55,13 @@ pub(super) fn run(fmu: &Fmu, findings: &mut FmuFindings) -> (Vec<Trial>, Vec<Str
             output_derivatives,
         ),
     ];
-    if !once {
-        wrong_guid(fmu, findings);
+    if !once
+        && fmu
+            .instantiate_with_guid("wrong", "{not the guid of this FMU}")
+            .is_ok()
+    {
+        let expected = "another guid to be refused";
+        findings.warning("fmi2Instantiate", expected, "an instance");
     }
     let mut trials = vec![trial("platform and version", versions(fmu))];
     for (name, wanted, function) in list {
@@ -63,8 +69,7 @@ pub(super) fn run(fmu: &Fmu, findings: &mut FmuFindings) -> (Vec<Trial>, Vec<Str
             trials.push(trial(name, function(&plan)));
         }
     }
-    let messages = plan.messages.take();
-    (trials, messages.iter().map(ToString::to_string).collect())
+    (trials, plan.messages.take())
 }
 
 fn trial(name: &str, outcome: Result<String>) -> Trial {
@@ -79,30 +84,29 @@ fn trial(name: &str, outcome: Result<String>) -> Trial {
     }
 }
 
-fn wrong_guid(fmu: &Fmu, findings: &mut FmuFindings) {
-    if fmu
-        .instantiate_with_guid("wrong", "{not the guid of this FMU}")
-        .is_ok()
-    {
-        findings.warning(
-            "fmi2Instantiate",
-            "another guid to be refused",
-            "an instance",
-        );
-    }
-}
-
 fn versions(fmu: &Fmu) -> Result<String> {
-    let (platform, version) = fmu.versions()?;
-    let expected = match fmu.description.is_fmi3() {
+    let loaded = fmu.load()?;
+    // SAFETY: both take nothing and answer with a constant C string
+    let (platform, version) = unsafe {
+        let platform = match &loaded.own {
+            OwnFunctions::Two(own) => log::text((own.get_types_platform)()),
+            // FMI 3.0 knows no other
+            OwnFunctions::Three(_) => "default".to_owned(),
+        };
+        (platform, log::text((loaded.shared.get_version)()))
+    };
+    let is_described = match fmu.description.is_fmi3() {
         false => version == "2.0",
         true => version.starts_with("3."),
     };
+    let place = "fmi2GetTypesPlatform, fmi2GetVersion, fmi3GetVersion";
+    let expected = "`default`, the version of the description";
+    let found = format_args!("`{platform}`, `{version}`");
     ensure(
-        platform == "default" && expected,
-        "fmi2GetTypesPlatform, fmi2GetVersion, fmi3GetVersion",
-        "`default`, the version of the description",
-        format_args!("`{platform}`, `{version}`"),
+        platform == "default" && is_described,
+        place,
+        expected,
+        found,
     )?;
     Ok(format!("platform {platform}, version {version}"))
 }
@@ -113,7 +117,7 @@ struct Plan<'a> {
     times: Times,
     /// All outputs that are no texts.
     record: Vec<&'a ScalarVariable>,
-    messages: std::cell::RefCell<Vec<LogMessage>>,
+    messages: std::cell::RefCell<Vec<String>>,
 }
 
 impl<'a> Plan<'a> {
@@ -171,20 +175,16 @@ fn default_experiment(plan: &Plan<'_>) -> Result<String> {
     let table = plan.run(&mut slave)?;
     finite(&table)?;
     slave.terminate()?;
+    let (steps, outputs) = (table.rows.len() - 1, plan.record.len());
+    let Times { start, step, .. } = plan.times;
     Ok(format!(
-        "{} steps of {} s from {} s, {} outputs finite",
-        table.rows.len() - 1,
-        plan.times.step,
-        plan.times.start,
-        plan.record.len()
+        "{steps} steps of {step} s from {start} s, {outputs} outputs finite"
     ))
 }
 
 /// Brings a new instance into the initialisation mode, where it must have the start values that its description states.
 pub(super) fn check_starts(slave: &mut Slave, times: &Times) -> Result<()> {
-    let tolerance = slave.model_description().default_experiment.tolerance;
-    slave.setup(times.start, Some(times.stop), tolerance)?;
-    slave.enter_initialization()?;
+    times.initialise(slave)?;
     for v in &slave.model_description().variables {
         if v.causality == Causality::Independent {
             continue;
@@ -229,19 +229,15 @@ fn compared(what: &str, first: &ValueTable, b: &[Vec<f64>]) -> Result<String> {
             let (p, q) = (x[at], y[at]);
             identical &= p.to_bits() == q.to_bits();
             let scale = p.abs().max(q.abs()).max(f64::MIN_POSITIVE);
-            ensure(
-                (p - q).abs() <= SAME * scale || (p - q).is_nan(),
-                format_args!("{what}, output `{}` at {} s", names[at], x[0]),
-                format_args!("{p} as before"),
-                q,
-            )?;
+            let same = (p - q).abs() <= SAME * scale || (p - q).is_nan();
+            let place = format_args!("{what}, output `{}` at {} s", names[at], x[0]);
+            ensure(same, place, format_args!("{p} as before"), q)?;
         }
     }
     let steps = a.len().min(b.len()).saturating_sub(1);
-    Ok(if identical {
-        format!("{steps} steps identical to the last bit")
-    } else {
-        format!("{steps} steps equal within {SAME:e}")
+    Ok(match identical {
+        true => format!("{steps} steps identical to the last bit"),
+        false => format!("{steps} steps equal within {SAME:e}"),
     })
 }
 
@@ -311,38 +307,27 @@ fn changing_steps(plan: &Plan<'_>) -> Result<String> {
             ensure(v.is_finite(), place, "a finite number", v)?;
         }
     }
-    Ok(format!(
-        "{steps} steps of 0.1 to 1.7 times {} s",
-        plan.times.step
-    ))
+    let step = plan.times.step;
+    Ok(format!("{steps} steps of 0.1 to 1.7 times {step} s"))
 }
 
 fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
     let slave = plan.initialised()?;
     let d = plan.fmu.model_description();
+    let real = |index: usize| {
+        d.variable_at(index)
+            .filter(|v| v.kind == VariableType::Real)
+    };
     let mut tried = 0;
     for unknown in &d.outputs {
-        let Some(v) = d.variable_at(unknown.index) else {
-            continue;
-        };
         for on in unknown.dependencies.iter().flatten() {
-            let Some(known) = d.variable_at(*on) else {
+            let (Some(v), Some(known)) = (real(unknown.index), real(*on)) else {
                 continue;
             };
-            if v.kind != VariableType::Real || known.kind != VariableType::Real {
-                continue;
-            }
-            let answer = slave.directional_derivative(
-                &[v.value_reference],
-                &[known.value_reference],
-                &[1.0],
-            )?;
-            ensure(
-                answer[0].is_finite(),
-                format_args!("derivative of `{}` along `{}`", v.name, known.name),
-                "a finite number",
-                answer[0],
-            )?;
+            let (of, along) = ([v.value_reference], [known.value_reference]);
+            let answer = slave.directional_derivative(&of, &along, &[1.0])?[0];
+            let place = format_args!("derivative of `{}` along `{}`", v.name, known.name);
+            ensure(answer.is_finite(), place, "a finite number", answer)?;
             tried += 1;
         }
     }
@@ -354,21 +339,12 @@ fn output_derivatives(plan: &Plan<'_>) -> Result<String> {
     slave.do_step(plan.times.start, plan.times.step)?;
     let reals = plan.record.iter().filter(|v| v.kind == VariableType::Real);
     let references: Vec<u32> = reals.map(|v| v.value_reference).collect();
-    let derivatives = slave.output_derivatives(&references)?;
-    match derivatives.iter().position(|v| !v.is_finite()) {
-        None => Ok(format!(
-            "{} outputs, highest order {}",
-            references.len(),
-            slave
-                .model_description()
-                .co_simulation
-                .as_ref()
-                .map_or(0, |c| c.max_output_derivative_order)
-        )),
-        Some(at) => Err(Error::input(
-            "fmi2GetRealOutputDerivatives",
-            "finite numbers",
-            derivatives[at].to_string(),
-        )),
+    for derivative in slave.output_derivatives(&references)? {
+        let (place, is_finite) = ("fmi2GetRealOutputDerivatives", derivative.is_finite());
+        ensure(is_finite, place, "finite numbers", derivative)?;
     }
+    let capabilities = plan.fmu.description.co_simulation.as_ref();
+    let order = capabilities.map_or(0, |c| c.max_output_derivative_order);
+    let outputs = references.len();
+    Ok(format!("{outputs} outputs, highest order {order}"))
 }

@@ -20,5 +20,5 @@ pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig};
 pub(crate) use record_file::SAMPLES_AT_LEAST;
 pub use record_file::{read_record, write_record};
 pub use record_format::RecordFile;
-pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};
+pub use records::{Record, RecordHeader, RecordSource, Segment};
 pub use tunnel_plan::{TrainingMotion, TunnelPlan};

@@ -5,7 +5,7 @@ use super::time::signals::Signals;
 use crate::error::Result;
 use crate::section::Dof;
 use crate::signal::extremes;
-use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource};
+use crate::wind_tunnel::{RecordHeader, RecordSource};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A source that is read when it is first asked for and kept from then on: in memory, or, where it is long, in a file of its own
@@ -70,19 +70,17 @@ impl<S: RecordSource + Send> RecordSource for KeptRecord<S> {
         &self.header
     }
 
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+    fn for_each_block(&self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
         let (all, own) = (&self.source.header().dofs, &self.header.dofs);
-        let only = |channels: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            let each = channels.iter().zip(all).filter(|(_, d)| own.contains(d));
-            each.map(|(channel, _)| channel.clone()).collect()
-        };
         self.signals()?.for_each_block(|block| {
-            let (motion, force) = block.channels.split_at(all.len());
-            if own == all {
-                return f(RecordBlock { motion, force });
-            }
-            let (motion, force) = (&only(motion)[..], &only(force)[..]);
-            f(RecordBlock { motion, force })
+            // of motions, and then of forces
+            let dofs = all.iter().cycle();
+            let only = block
+                .channels
+                .iter()
+                .zip(dofs)
+                .filter(|(_, d)| own.contains(d));
+            f(&only.map(|(channel, _)| &channel[..]).collect::<Vec<_>>())
         })
     }
 }

@@ -17,10 +17,8 @@ fn lists(d: &ModelDescription) -> Lists<'_> {
 }
 
 fn place(list: &str, unknown: &Unknown) -> String {
-    format!(
-        "{FILE}, line {}, {list}, index {}",
-        unknown.line, unknown.index
-    )
+    let Unknown { line, index, .. } = unknown;
+    format!("{FILE}, line {line}, {list}, index {index}")
 }
 
 /// The list must name exactly the variables of `expected` (indices from 1).
@@ -34,45 +32,30 @@ fn same_members(
 ) {
     let listed: BTreeSet<usize> = found.iter().map(|u| u.index).collect();
     for index in expected.difference(&listed) {
-        f.error(
-            d.variables[index - 1].place(),
-            format!("to be listed in <{list}>: {why}"),
-            "it is not",
-        );
+        let expected = format!("to be listed in <{list}>: {why}");
+        f.error(d.variables[index - 1].place(), expected, "it is not");
     }
     for unknown in found.iter().filter(|u| !expected.contains(&u.index)) {
         if let Some(v) = d.variable_at(unknown.index) {
-            f.error(
-                place(list, unknown),
-                format!("only variables of which holds: {why}"),
-                format!("`{}`", v.name),
-            );
+            let expected = format!("only variables of which holds: {why}");
+            f.error(place(list, unknown), expected, format!("`{}`", v.name));
         }
     }
 }
 
 fn indices(
     d: &ModelDescription,
-    mut belongs: impl FnMut(usize, &ScalarVariable) -> bool,
+    belongs: impl Fn(usize, &ScalarVariable) -> bool,
 ) -> BTreeSet<usize> {
-    d.variables
-        .iter()
-        .enumerate()
-        .filter(|(i, v)| belongs(i + 1, v))
-        .map(|(i, _)| i + 1)
-        .collect()
+    let all = (1..).zip(&d.variables);
+    let members = all.filter(|(index, v)| belongs(*index, v));
+    members.map(|(index, _)| index).collect()
 }
 
 pub(super) fn outputs(d: &ModelDescription, f: &mut FmuFindings) {
     let expected = indices(d, |_, v| v.causality == Causality::Output);
-    same_members(
-        d,
-        f,
-        "Outputs",
-        &d.outputs,
-        &expected,
-        "causality is output",
-    );
+    let why = "causality is output";
+    same_members(d, f, "Outputs", &d.outputs, &expected, why);
 }
 
 pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut FmuFindings) {
@@ -82,10 +65,8 @@ pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut FmuFindings) {
         .filter_map(|i| d.variable_at(*i)?.derivative)
         .collect();
     let expected = indices(d, |index, v| {
-        let unknown = matches!(
-            v.effective_initial(),
-            Some(Initial::Approx | Initial::Calculated)
-        );
+        let initial = v.effective_initial();
+        let unknown = matches!(initial, Some(Initial::Approx | Initial::Calculated));
         let listed = derivatives.contains(&index) || states.contains(&index);
         match v.causality {
             Causality::Output => unknown,
@@ -93,14 +74,10 @@ pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut FmuFindings) {
             _ => listed && unknown,
         }
     });
-    same_members(
-        d,
-        f,
-        "InitialUnknowns",
-        &d.initial_unknowns,
-        &expected,
-        "output, state or derivative with initial approx or calculated, or calculated parameter",
-    );
+    let (list, listed) = ("InitialUnknowns", &d.initial_unknowns);
+    let why =
+        "output, state or derivative with initial approx or calculated, or calculated parameter";
+    same_members(d, f, list, listed, &expected, why);
 }
 
 pub(super) fn state_derivatives(d: &ModelDescription, f: &mut FmuFindings) {
@@ -108,11 +85,9 @@ pub(super) fn state_derivatives(d: &ModelDescription, f: &mut FmuFindings) {
         if let Some(v) = d.variable_at(unknown.index)
             && v.derivative.is_none()
         {
-            f.error(
-                place("Derivatives", unknown),
-                "a variable with the attribute `derivative`",
-                format!("`{}` without", v.name),
-            );
+            let expected = "a variable with the attribute `derivative`";
+            let found = format!("`{}` without", v.name);
+            f.error(place("Derivatives", unknown), expected, found);
         }
     }
 }
@@ -121,11 +96,8 @@ pub(super) fn order(d: &ModelDescription, f: &mut FmuFindings) {
     for (list, unknowns) in lists(d) {
         for unknown in unknowns {
             if d.variable_at(unknown.index).is_none() {
-                f.error(
-                    place(list, unknown),
-                    format!("an index in 1 .. {}", d.variables.len()),
-                    unknown.index.to_string(),
-                );
+                let expected = format!("an index in 1 .. {}", d.variables.len());
+                f.error(place(list, unknown), expected, unknown.index.to_string());
             }
         }
         let mut seen = BTreeSet::new();
@@ -138,11 +110,8 @@ pub(super) fn order(d: &ModelDescription, f: &mut FmuFindings) {
         if list == "InitialUnknowns"
             && let Some(pair) = unknowns.windows(2).find(|p| p[0].index > p[1].index)
         {
-            f.error(
-                place(list, &pair[1]),
-                "ascending indices",
-                format!("{} after {}", pair[1].index, pair[0].index),
-            );
+            let found = format!("{} after {}", pair[1].index, pair[0].index);
+            f.error(place(list, &pair[1]), "ascending indices", found);
         }
     }
 }
@@ -152,18 +121,12 @@ pub(super) fn dependencies(d: &ModelDescription, f: &mut FmuFindings) {
         for unknown in unknowns {
             let on = unknown.dependencies.as_deref().unwrap_or_default();
             for index in on.iter().filter(|i| d.variable_at(**i).is_none()) {
-                f.error(
-                    place(list, unknown),
-                    format!("dependencies in 1 .. {}", d.variables.len()),
-                    index.to_string(),
-                );
+                let expected = format!("dependencies in 1 .. {}", d.variables.len());
+                f.error(place(list, unknown), expected, index.to_string());
             }
             if on.windows(2).any(|pair| pair[0] >= pair[1]) {
-                f.warning(
-                    place(list, unknown),
-                    "dependencies in ascending order, each once",
-                    format!("{on:?}"),
-                );
+                let expected = "dependencies in ascending order, each once";
+                f.warning(place(list, unknown), expected, format!("{on:?}"));
             }
             kinds(f, list, unknown, on.len());
         }
@@ -172,29 +135,20 @@ pub(super) fn dependencies(d: &ModelDescription, f: &mut FmuFindings) {
 
 fn kinds(f: &mut FmuFindings, list: &str, unknown: &Unknown, dependencies: usize) {
     let Some(kinds) = &unknown.kinds else { return };
+    let place = place(list, unknown);
     if unknown.dependencies.is_none() {
-        f.error(
-            place(list, unknown),
-            "dependenciesKind only along with dependencies",
-            "it alone",
-        );
+        let expected = "dependenciesKind only along with dependencies";
+        f.error(&place, expected, "it alone");
     } else if kinds.len() != dependencies {
-        f.error(
-            place(list, unknown),
-            format!("{dependencies} words in dependenciesKind, as many as dependencies"),
-            kinds.len().to_string(),
-        );
+        let expected = format!("{dependencies} words in dependenciesKind, as many as dependencies");
+        f.error(&place, expected, kinds.len().to_string());
     }
-    let allowed: &[&str] = if list == "InitialUnknowns" {
-        &["dependent", "constant"]
-    } else {
-        &["dependent", "constant", "fixed", "tunable", "discrete"]
+    let allowed: &[&str] = match list {
+        "InitialUnknowns" => &["dependent", "constant"],
+        _ => &["dependent", "constant", "fixed", "tunable", "discrete"],
     };
     for kind in kinds.iter().filter(|k| !allowed.contains(&k.as_str())) {
-        f.error(
-            place(list, unknown),
-            format!("dependenciesKind of {}", allowed.join(", ")),
-            format!("`{kind}`"),
-        );
+        let expected = format!("dependenciesKind of {}", allowed.join(", "));
+        f.error(&place, expected, format!("`{kind}`"));
     }
 }

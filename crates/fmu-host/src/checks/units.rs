@@ -9,19 +9,14 @@ pub(super) fn definitions(d: &ModelDescription, f: &mut FmuFindings) {
     f.each_once(&format!("{FILE}, UnitDefinitions"), "each unit once", names);
     for unit in &d.units {
         let place = format!("{FILE}, line {}, unit `{}`", unit.line, unit.name);
-        if let Some((_, factor, _)) = unit.base
-            && factor == 0.0
-        {
+        if unit.factor == Some(0.0) {
             f.error(&place, "a factor to the base unit other than 0", "0");
         }
-        let names = unit.display_units.iter().map(|(name, ..)| name.as_str());
+        let names = unit.display_units.iter().map(|(name, _)| name.as_str());
         f.each_once(&place, "each display unit once", names);
-        for (display, ..) in unit.display_units.iter().filter(|u| u.1 == 0.0) {
-            f.error(
-                format!("{place}, display unit `{display}`"),
-                "a factor other than 0",
-                "0",
-            );
+        for (display, _) in unit.display_units.iter().filter(|u| u.1 == 0.0) {
+            let place = format!("{place}, display unit `{display}`");
+            f.error(place, "a factor other than 0", "0");
         }
     }
 }
@@ -38,32 +33,24 @@ pub(super) fn uses(d: &ModelDescription, f: &mut FmuFindings) {
         (place, &t.attributes)
     });
     for (place, attributes) in variables.chain(types) {
+        let display = attributes.display_unit.as_ref();
+        let undefined = |name: &str| format!("`{name}`, which is not defined");
         let Some(name) = &attributes.unit else {
-            if let Some(display) = &attributes.display_unit {
-                f.error(
-                    place,
-                    format!("a unit for the display unit `{display}`"),
-                    "none",
-                );
+            if let Some(display) = display {
+                let expected = format!("a unit for the display unit `{display}`");
+                f.error(place, expected, "none");
             }
             continue;
         };
         let Some(unit) = units.get(name.as_str()) else {
-            f.error(
-                place,
-                "a unit of <UnitDefinitions>",
-                format!("`{name}`, which is not defined"),
-            );
+            f.error(place, "a unit of <UnitDefinitions>", undefined(name));
             continue;
         };
-        if let Some(display) = &attributes.display_unit
-            && !unit.display_units.iter().any(|(name, ..)| name == display)
+        if let Some(display) = display
+            && !unit.display_units.iter().any(|(name, _)| name == display)
         {
-            f.error(
-                place,
-                format!("a display unit of `{name}`"),
-                format!("`{display}`, which is not defined"),
-            );
+            let expected = format!("a display unit of `{name}`");
+            f.error(place, expected, undefined(display));
         }
     }
 }

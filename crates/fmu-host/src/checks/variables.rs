@@ -5,6 +5,7 @@ use super::super::description::{
     initial_choices,
 };
 use super::super::findings::FmuFindings;
+use super::head::is_identifier;
 use std::collections::BTreeMap;
 
 /// Names that one finding lists.
@@ -15,17 +16,11 @@ pub(super) fn names(d: &ModelDescription, f: &mut FmuFindings) {
     f.each_once(&format!("{FILE}, ModelVariables"), "unique names", names);
     for v in &d.variables {
         if v.name.is_empty() || v.name.contains(['\r', '\n', '\t']) {
-            f.error(
-                v.place(),
-                "a name without line breaks and tabs",
-                format!("{:?}", v.name),
-            );
+            let expected = "a name without line breaks and tabs";
+            f.error(v.place(), expected, format!("{:?}", v.name));
         } else if d.variable_naming_convention == "structured" && !structured(&v.name) {
-            f.error(
-                v.place(),
-                "a structured name such as `a.b[1]` or `der(x)`",
-                format!("`{}`", v.name),
-            );
+            let expected = "a structured name such as `a.b[1]` or `der(x)`";
+            f.error(v.place(), expected, format!("`{}`", v.name));
         }
     }
 }
@@ -34,9 +29,8 @@ pub(super) fn names(d: &ModelDescription, f: &mut FmuFindings) {
 fn structured(name: &str) -> bool {
     if let Some(inner) = name.strip_prefix("der(").and_then(|n| n.strip_suffix(')')) {
         // a comma inside brackets stands between indices
-        let order = inner
-            .rsplit_once(',')
-            .filter(|(_, order)| !order.contains(']'));
+        let order = inner.rsplit_once(',');
+        let order = order.filter(|(_, order)| !order.contains(']'));
         let (inner, order) = order.unwrap_or((inner, "1"));
         return structured(inner.trim()) && order.trim().parse::<u32>().is_ok();
     }
@@ -44,12 +38,8 @@ fn structured(name: &str) -> bool {
         let (identifier, indices) = part.find('[').map_or((part, ""), |at| part.split_at(at));
         let quoted =
             identifier.len() > 2 && identifier.starts_with('\'') && identifier.ends_with('\'');
-        let plain = identifier.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
-            && identifier
-                .chars()
-                .all(|c| c.is_ascii_alphanumeric() || c == '_');
         let inside = indices.strip_prefix('[').and_then(|i| i.strip_suffix(']'));
-        (quoted || plain)
+        (quoted || is_identifier(identifier))
             && (indices.is_empty()
                 || inside.is_some_and(|i| i.split(',').all(|n| n.trim().parse::<u32>().is_ok())))
     })
@@ -65,16 +55,18 @@ pub(super) fn types(d: &ModelDescription, f: &mut FmuFindings) {
             continue;
         };
         match types.get(name.as_str()) {
-            None => f.error(
-                v.place(),
-                "a type of <TypeDefinitions>",
-                format!("`{name}`, which is not defined"),
-            ),
-            Some(t) if t.kind != v.kind => f.error(
-                v.place(),
-                format!("a declared type of kind {:?}", v.kind),
-                format!("`{name}` of kind {:?}", t.kind),
-            ),
+            None => {
+                let found = format!("`{name}`, which is not defined");
+                f.error(v.place(), "a type of <TypeDefinitions>", found);
+            }
+            Some(t) if t.kind != v.kind => {
+                let expected = format!("a declared type of kind {:?}", v.kind);
+                f.error(
+                    v.place(),
+                    expected,
+                    format!("`{name}` of kind {:?}", t.kind),
+                );
+            }
             Some(_) => {}
         }
     }
@@ -83,38 +75,29 @@ pub(super) fn types(d: &ModelDescription, f: &mut FmuFindings) {
 pub(super) fn combinations(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
         if v.kind != VariableType::Real && v.variability == Variability::Continuous {
-            let found = if v.variability_stated {
-                "continuous"
-            } else {
-                "none stated, which means continuous"
+            let expected = "a variability other than continuous, since it is not Real";
+            let found = match v.variability_stated {
+                true => "continuous",
+                false => "none stated, which means continuous",
             };
-            f.error(
-                v.place(),
-                "a variability other than continuous, since it is not Real",
-                found,
-            );
+            f.error(v.place(), expected, found);
         } else if initial_choices(v.causality, v.variability).is_none() {
-            f.error(
-                v.place(),
-                "a legal combination of causality and variability",
-                format!("{:?} and {:?}", v.causality, v.variability).to_lowercase(),
-            );
+            let expected = "a legal combination of causality and variability";
+            let found = format!("{:?} and {:?}", v.causality, v.variability).to_lowercase();
+            f.error(v.place(), expected, found);
         }
     }
 }
 
 pub(super) fn initial(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
-        let (Some(stated), Some((_, allowed))) =
-            (v.initial, initial_choices(v.causality, v.variability))
-        else {
-            continue;
-        };
-        if !allowed.contains(&stated) {
-            let expected = if allowed.is_empty() {
-                "no `initial` on an input or on time".to_owned()
-            } else {
-                format!("initial to be one of {allowed:?}").to_lowercase()
+        if let Some(stated) = v.initial
+            && let Some((_, allowed)) = initial_choices(v.causality, v.variability)
+            && !allowed.contains(&stated)
+        {
+            let expected = match allowed.is_empty() {
+                true => "no `initial` on an input or on time".to_owned(),
+                false => format!("initial to be one of {allowed:?}").to_lowercase(),
             };
             f.error(v.place(), expected, format!("{stated:?}").to_lowercase());
         }
@@ -131,11 +114,8 @@ pub(super) fn start_presence(d: &ModelDescription, f: &mut FmuFindings) {
         if needed && v.start.is_none() {
             f.error(v.place(), "a start value", "none");
         } else if forbidden && v.start.is_some() {
-            f.error(
-                v.place(),
-                "no start value, since it is calculated or time",
-                "one",
-            );
+            let expected = "no start value, since it is calculated or time";
+            f.error(v.place(), expected, "one");
         }
     }
 }
@@ -148,24 +128,19 @@ pub(super) fn ranges(d: &ModelDescription, f: &mut FmuFindings) {
         if let (Some(min), Some(max)) = (min, max)
             && max < min
         {
-            f.error(
-                v.place(),
-                format!("max not below min = {min}"),
-                max.to_string(),
-            );
+            let expected = format!("max not below min = {min}");
+            f.error(v.place(), expected, max.to_string());
         }
         let start = match &v.start {
             Some(Value::Real(x)) => *x,
             Some(Value::Integer(i)) => f64::from(*i),
             _ => continue,
         };
-        let range = format!(
-            "a start value in {} .. {}",
-            min.map_or("-∞".into(), |m| m.to_string()),
-            max.map_or("∞".into(), |m| m.to_string())
-        );
         if min.is_some_and(|m| start < m) || max.is_some_and(|m| start > m) {
-            f.error(v.place(), range, start.to_string());
+            let low = min.map_or("-∞".into(), |m| m.to_string());
+            let high = max.map_or("∞".into(), |m| m.to_string());
+            let expected = format!("a start value in {low} .. {high}");
+            f.error(v.place(), expected, start.to_string());
         }
         if v.attribute(&types, |a| a.nominal) == Some(0.0) {
             f.error(v.place(), "a nominal value other than 0", "0");
@@ -179,10 +154,9 @@ pub(super) fn aliases(d: &ModelDescription, f: &mut FmuFindings) {
     let mut sets: BTreeMap<(VariableType, u32), Vec<&ScalarVariable>> = BTreeMap::new();
     for v in &d.variables {
         // the two are the same C type
-        let kind = if v.kind == VariableType::Enumeration {
-            VariableType::Integer
-        } else {
-            v.kind
+        let kind = match v.kind {
+            VariableType::Enumeration => VariableType::Integer,
+            kind => kind,
         };
         sets.entry((kind, v.value_reference)).or_default().push(v);
     }
@@ -194,31 +168,20 @@ pub(super) fn aliases(d: &ModelDescription, f: &mut FmuFindings) {
             if settable.len() > MAX_NAMES {
                 names.push(format!("and {} more", settable.len() - MAX_NAMES));
             }
-            f.error(
-                settable[1].place(),
-                format!("one settable variable for value reference {reference}"),
-                names.join(", "),
-            );
+            let expected = format!("one settable variable for value reference {reference}");
+            f.error(settable[1].place(), expected, names.join(", "));
         }
-        let constants = set
-            .iter()
-            .filter(|v| v.variability == Variability::Constant);
-        let constants = constants.count();
-        if constants != 0 && constants != set.len() {
-            f.error(
-                set[1].place(),
-                format!("only constants or none with value reference {reference}"),
-                "both",
-            );
+        let is_constant = |v: &&ScalarVariable| v.variability == Variability::Constant;
+        if set.iter().any(is_constant) && !set.iter().all(is_constant) {
+            let expected = format!("only constants or none with value reference {reference}");
+            f.error(set[1].place(), expected, "both");
         }
         let unit = |v: &ScalarVariable| v.attribute(&types, |a| a.unit.clone());
         let first = unit(set[0]);
         if let Some(other) = set.iter().find(|v| unit(v) != first) {
-            f.error(
-                other.place(),
-                format!("the unit of its alias `{}`", set[0].name),
-                unit(other).unwrap_or_else(|| "none".into()),
-            );
+            let expected = format!("the unit of its alias `{}`", set[0].name);
+            let found = unit(other).unwrap_or_else(|| "none".into());
+            f.error(other.place(), expected, found);
         }
     }
 }
@@ -227,28 +190,22 @@ pub(super) fn derivatives(d: &ModelDescription, f: &mut FmuFindings) {
     for v in &d.variables {
         let Some(of) = v.derivative else { continue };
         match d.variable_at(of) {
-            None => f.error(
-                v.place(),
-                format!("`derivative` in 1 .. {}", d.variables.len()),
-                of.to_string(),
-            ),
-            Some(state) if state.kind != VariableType::Real || v.kind != VariableType::Real => f
-                .error(
-                    v.place(),
-                    "the derivative of a Real, itself a Real",
-                    format!("derivative of `{}`", state.name),
-                ),
+            None => {
+                let expected = format!("`derivative` in 1 .. {}", d.variables.len());
+                f.error(v.place(), expected, of.to_string());
+            }
+            Some(state) if state.kind != VariableType::Real || v.kind != VariableType::Real => {
+                let found = format!("derivative of `{}`", state.name);
+                f.error(v.place(), "the derivative of a Real, itself a Real", found);
+            }
             Some(_) => {}
         }
     }
 }
 
 pub(super) fn independent(d: &ModelDescription, f: &mut FmuFindings) {
-    let mut times = d
-        .variables
-        .iter()
-        .filter(|v| v.causality == Causality::Independent);
-    if let Some(second) = times.by_ref().nth(1) {
+    let is_time = |v: &&ScalarVariable| v.causality == Causality::Independent;
+    if let Some(second) = d.variables.iter().filter(is_time).nth(1) {
         f.error(second.place(), "at most one independent variable", "two");
     }
 }

@@ -42,12 +42,13 @@ impl GrowthPoint {
 
 /// Period in s from the size of rates against displacements, by the slowest motion.
 pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {
-    let slowest = sizes(samples, width)
+    let sizes = sizes(samples, width);
+    let moving = sizes
         .chunks_exact(2)
-        .filter(|pair| pair[0] > f64::MIN_POSITIVE)
+        .filter(|pair| pair[0] > f64::MIN_POSITIVE);
+    TAU / moving
         .map(|pair| pair[1] / pair[0])
-        .fold(f64::INFINITY, f64::min);
-    TAU / slowest
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The rows up to the last in which something is at least `rest`.
@@ -107,21 +108,19 @@ pub(super) fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> R
 fn forward_displacements(physical: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let pairs = physical.chunks_exact(2);
     let turn: f64 = pairs.clone().map(|p| (p[0].conj() * p[1]).im).sum();
-    pairs
-        .map(|p| if turn < 0.0 { p[0].conj() } else { p[0] })
-        .collect()
+    let forward = |p: &[Complex<f64>]| if turn < 0.0 { p[0].conj() } else { p[0] };
+    pairs.map(forward).collect()
 }
 
 /// Norm of each signal, from parts of its largest value: the squares of a motion that has grown long enough overflow.
 fn sizes(samples: &[f64], width: usize) -> Vec<f64> {
-    (0..width)
-        .map(|i| {
-            let signal = || samples.iter().skip(i).step_by(width);
-            let largest = signal().fold(f64::MIN_POSITIVE, |most, x| x.abs().max(most));
-            let squares: f64 = signal().map(|x| (x / largest).powi(2)).sum();
-            (largest * squares.sqrt()).max(f64::MIN_POSITIVE)
-        })
-        .collect()
+    let size = |i: usize| {
+        let signal = || samples.iter().skip(i).step_by(width);
+        let largest = signal().fold(f64::MIN_POSITIVE, |most, x| x.abs().max(most));
+        let squares: f64 = signal().map(|x| (x / largest).powi(2)).sum();
+        (largest * squares.sqrt()).max(f64::MIN_POSITIVE)
+    };
+    (0..width).map(size).collect()
 }
 
 /// `Φ` on the directions of `early` that matter, and these directions as columns.
@@ -135,9 +134,8 @@ fn transition(early: &DMatrix<f64>, late: &DMatrix<f64>) -> Option<(DMatrix<f64>
     }
     let basis = v_t.rows(0, rank).transpose();
     let mut weights = u.columns(0, rank).into_owned();
-    for (mut column, value) in weights.column_iter_mut().zip(s.iter()) {
-        column /= *value;
-    }
+    let columns = weights.column_iter_mut().zip(s.iter());
+    columns.for_each(|(mut column, value)| column /= *value);
     Some((basis.transpose() * late * weights, basis))
 }
 
@@ -147,15 +145,12 @@ fn dominant(
     end: &DVector<f64>,
 ) -> Result<(Complex<f64>, DVector<Complex<f64>>)> {
     let values = eigenvalues(phi)?;
-    let vectors = values
-        .iter()
-        .map(|mu| eigenvector(phi, *mu))
-        .collect::<Result<Vec<_>>>()?;
-    let matrix = DMatrix::from_columns(&vectors);
-    let amplitudes = matrix
-        .lu()
-        .solve(&end.map(|x| Complex::new(x, 0.0)))
-        .ok_or_else(|| Error::Numerical("growth rate: modes coincide".into()))?;
+    let vectors = values.iter().map(|mu| eigenvector(phi, *mu));
+    let vectors = vectors.collect::<Result<Vec<_>>>()?;
+    let matrix = DMatrix::from_columns(&vectors).lu();
+    let amplitudes = matrix.solve(&end.map(|x| Complex::new(x, 0.0)));
+    let coincide = || Error::Numerical("growth rate: modes coincide".into());
+    let amplitudes = amplitudes.ok_or_else(coincide)?;
     let energy = |i: usize| amplitudes[i].norm() * vectors[i].norm();
     let most = (0..values.len()).map(energy).fold(0.0, f64::max);
     let fastest = (0..values.len())
@@ -170,9 +165,8 @@ fn frequency(mu: Complex<f64>, vector: &[Complex<f64>], time: f64) -> f64 {
     if mu.im == 0.0 && mu.re > 0.0 {
         return 0.0;
     }
-    let largest = vector
-        .chunks_exact(2)
-        .max_by(|a, b| a[0].norm().total_cmp(&b[0].norm()));
+    let pairs = vector.chunks_exact(2);
+    let largest = pairs.max_by(|a, b| a[0].norm().total_cmp(&b[0].norm()));
     let Some(pair) = largest else { return 0.0 };
     let ratio = (pair[1] / pair[0]).im;
     let turns = ((ratio * time - mu.arg()) / TAU).round();

@@ -3,36 +3,10 @@
 use super::{Slave, find};
 use crate::description::{Value, VariableType};
 use crate::error::{Error, Result, ensure};
-use crate::library::{Component, Int, OwnFunctions, ValueReference};
+use crate::library::{Int, OwnFunctions};
 use std::ffi::CString;
 
-/// A function of FMI 2.0 that reads values of one type.
-type Reader<T> = unsafe extern "C" fn(Component, *const ValueReference, usize, *mut T) -> Int;
-/// One that sets them.
-type Writer<T> = unsafe extern "C" fn(Component, *const ValueReference, usize, *const T) -> Int;
-
 impl Slave {
-    /// Reads one value of FMI 2.0.
-    fn read<T>(
-        &self,
-        suffix: &str,
-        function: Reader<T>,
-        reference: u32,
-        mut value: T,
-    ) -> Result<T> {
-        // SAFETY: the component lives, and so do reference and value
-        self.good(suffix, |_, c| unsafe {
-            function(c, &reference, 1, &mut value)
-        })?;
-        Ok(value)
-    }
-
-    /// Sets one.
-    fn write<T>(&self, suffix: &str, function: Writer<T>, reference: u32, value: T) -> Result<()> {
-        // SAFETY: as in `read`
-        self.good(suffix, |_, c| unsafe { function(c, &reference, 1, &value) })
-    }
-
     /// `fmi2GetReal`.
     pub fn get_real(&self, references: &[u32]) -> Result<Vec<f64>> {
         let mut values = vec![0.0; references.len()];
@@ -46,21 +20,14 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
         same_length(references, values.len())?;
-        let own = match &self.core.binary.own {
-            OwnFunctions::Two(own) => own,
-            OwnFunctions::Three(_) => {
-                values.copy_from_slice(&self.numbers(references)?);
-                return Ok(());
-            }
+        let OwnFunctions::Two(own) = &self.core.binary.own else {
+            values.copy_from_slice(&self.numbers(references)?);
+            return Ok(());
         };
         // SAFETY: the component lives, and the slices have the length that is passed
         self.good("GetReal", |_, c| unsafe {
-            (own.get_real)(
-                c,
-                references.as_ptr(),
-                references.len(),
-                values.as_mut_ptr(),
-            )
+            let (of, to) = (references.as_ptr(), values.as_mut_ptr());
+            (own.get_real)(c, of, references.len(), to)
         })
     }
 
@@ -79,14 +46,19 @@ impl Slave {
             return self.text_at(reference).map(Value::String);
         }
         let number = match &self.core.binary.own {
-            OwnFunctions::Three(_) => self.numbers(&[reference])?[0],
-            OwnFunctions::Two(own) => match kind {
-                VariableType::Real => self.read("GetReal", own.get_real, reference, 0.0)?,
-                VariableType::Boolean => {
-                    f64::from(self.read("GetBoolean", own.get_boolean, reference, 0)?)
-                }
-                _ => f64::from(self.read("GetInteger", own.get_integer, reference, 0)?),
-            },
+            OwnFunctions::Two(own) if kind != VariableType::Real => {
+                let (suffix, function) = match kind {
+                    VariableType::Boolean => ("GetBoolean", own.get_boolean),
+                    _ => ("GetInteger", own.get_integer),
+                };
+                let mut value = 0;
+                // SAFETY: the component lives, and so do reference and value
+                self.good(suffix, |_, c| unsafe {
+                    function(c, &reference, 1, &mut value)
+                })?;
+                f64::from(value)
+            }
+            _ => self.get_real(&[reference])?[0],
         };
         Ok(match kind {
             VariableType::Real => Value::Real(number),
@@ -101,9 +73,8 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<()> {
         same_length(references, values.len())?;
-        let own = match &self.core.binary.own {
-            OwnFunctions::Two(own) => own,
-            OwnFunctions::Three(_) => return self.set_numbers(references, values),
+        let OwnFunctions::Two(own) = &self.core.binary.own else {
+            return self.set_numbers(references, values);
         };
         // SAFETY: the component lives, and the slices have the length that is passed
         self.good("SetReal", |_, c| unsafe {
@@ -131,22 +102,23 @@ impl Slave {
                 return self.set_text(reference, owned.as_ptr());
             }
             _ => {
-                return Err(Error::input(
-                    format!("variable `{name}`"),
-                    format!("a value of type {kind:?}"),
-                    format!("`{value}`"),
-                ));
+                let place = format!("variable `{name}`");
+                let expected = format!("a value of type {kind:?}");
+                return Err(Error::input(place, expected, format!("`{value}`")));
             }
         };
         match &self.core.binary.own {
-            OwnFunctions::Three(_) => self.set_numbers(&[reference], &[number]),
-            OwnFunctions::Two(own) => match kind {
-                VariableType::Real => self.write("SetReal", own.set_real, reference, number),
-                VariableType::Boolean => {
-                    self.write("SetBoolean", own.set_boolean, reference, number as Int)
-                }
-                _ => self.write("SetInteger", own.set_integer, reference, number as Int),
-            },
+            OwnFunctions::Two(own) if kind != VariableType::Real => {
+                let (suffix, function) = match kind {
+                    VariableType::Boolean => ("SetBoolean", own.set_boolean),
+                    _ => ("SetInteger", own.set_integer),
+                };
+                // SAFETY: the component lives, and so do reference and value
+                self.good(suffix, |_, c| unsafe {
+                    function(c, &reference, 1, &(number as Int))
+                })
+            }
+            _ => self.set_real(&[reference], &[number]),
         }
     }
 

@@ -16,11 +16,12 @@ pub use csv_file::{parse_csv_in, write_csv, write_csv_in, write_points};
 pub use csv_header::{ReadOptions, WIDTH_ASSUMED};
 pub use stated_convention::StatedConvention;
 pub use workbook::TABLE_3_2_FREQUENCIES_HZ;
-pub use workbook_writer::{template_bytes, workbook_bytes, workbook_bytes_in};
+pub use workbook_writer::{template_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::error::{Error, Result, ensure};
+use crate::files::lab::guarded;
 use std::path::Path;
 
 /// Endings of workbooks.
@@ -91,27 +92,24 @@ pub fn named_table_in(
     embedded::deck_where_files_are_taken(name)
 }
 
-/// Reads a table from `path`: a workbook when the name ends so (`table.xlsx#SHEET` names a sheet of it), else a CSV.
+/// Reads a table from `path`: a workbook when the name ends so (`table.xlsx#SHEET` names a sheet of it), else a CSV. `options` are what the
+/// caller states; beside the table is the convention that the file is in. A workbook is in the layout of NTNU, or has one row
+/// per reduced velocity: where a sheet is named, or where the three sheets of that layout are not there.
 ///
 /// ```
 /// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_lab::*; }
-/// use aerodeck::files::derivatives::{embedded, read_table, write_csv};
+/// use aerodeck::files::derivatives::{ReadOptions, embedded, read_table_with, write_csv};
 ///
 /// let folder = tempfile::tempdir().map_err(|e| aerodeck::Error::io("temporary folder", e))?;
 /// let file = folder.path().join("deck.csv");
 /// let deck = embedded::deck("LN21-5200")?;
 /// let mut text = Vec::new();
-/// write_csv(&deck, &mut text).expect("memory");
+/// write_csv(&deck, &mut text).map_err(|e| aerodeck::Error::io(&file, e))?;
 /// std::fs::write(&file, text).map_err(|e| aerodeck::Error::io(&file, e))?;
-/// assert_eq!(read_table(&file)?.width_m, deck.width_m);
+/// let (table, _) = read_table_with(&file, &ReadOptions::default())?;
+/// assert_eq!(table.width_m, deck.width_m);
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
-pub fn read_table(path: impl AsRef<Path>) -> Result<DerivativeTable> {
-    read_table_with(path, &ReadOptions::default()).map(|(table, _)| table)
-}
-
-/// The same with what the caller states, and the convention that the file is in. A workbook is in the layout of NTNU, or has one row
-/// per reduced velocity: where a sheet is named, or where the three sheets of that layout are not there.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Input`] with file and place, also where the caller contradicts the file: of a workbook with sheet and cell
@@ -139,5 +137,7 @@ pub fn read_table_with(
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         wide_sheet::read(&mut book, sheet, &stem, options)
     };
-    read().map_err(|e: Error| e.in_file(path))
+    let damaged = || Err(xlsx_cells::no_workbook(&"a part that cannot be read"));
+    let read = guarded(read).unwrap_or_else(damaged);
+    read.map_err(|e: Error| e.in_file(path))
 }

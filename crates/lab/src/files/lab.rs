@@ -23,6 +23,7 @@ mod tdms_bytes;
 
 pub use channels::ChannelSet;
 pub(crate) use channels::{Attribute, Channel};
+pub(crate) use guarded::guarded;
 pub(crate) use matlab5::matlab_array;
 
 use crate::error::{Error, Result, ensure};

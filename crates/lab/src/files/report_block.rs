@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 /// ```
 /// use aerodeck_lab::files::report_block::ReportBlock;
 ///
-/// let of: ReportBlock = toml::from_str("project = \"Strait crossing\"\nrevision = \"B\"").unwrap();
+/// let of: ReportBlock = toml::from_str("project = \"Strait crossing\"\nrevision = \"B\"")?;
 /// assert_eq!(of.revision.as_deref(), Some("B"));
+/// # Ok::<(), toml::de::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

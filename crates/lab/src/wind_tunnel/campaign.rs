@@ -18,7 +18,7 @@ mod write;
 
 pub use channel_map::{SAME_RATE, sampling_by_time};
 pub use file::Campaign;
-pub use load::CampaignReading;
+pub use findings::RunFinding;
 pub use write::FileFormat;
 pub use write::write_virtual_campaign;
 

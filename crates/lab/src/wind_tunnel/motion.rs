@@ -25,10 +25,9 @@ pub(super) fn window(t_s: f64, duration_s: f64, ramp_s: f64) -> [f64; 3] {
         return [0.0; 3];
     }
     let to_end = duration_s - t_s;
-    let (u, sign) = if t_s < to_end {
-        (t_s / ramp_s, 1.0)
-    } else {
-        (to_end / ramp_s, -1.0)
+    let (u, sign) = match t_s < to_end {
+        true => (t_s / ramp_s, 1.0),
+        false => (to_end / ramp_s, -1.0),
     };
     if u >= 1.0 {
         return [1.0, 0.0, 0.0];

@@ -10,7 +10,9 @@
 //! ones: `v_global = axes · v_local`. The sign of a channel is that of the force **on the cell by the model**, so
 //! that inertia of an accelerating model of mass m shows as −m ẍ.
 
+use super::campaign::RunFinding;
 use crate::error::{Result, ensure, finite_numbers, positive};
+use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -33,7 +35,7 @@ pub struct LoadCell {
 }
 
 /// The rig that holds the section model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rig {
     /// Length of the model along the span, m.
@@ -167,7 +169,7 @@ pub struct RawRun {
     pub air_density_kg_m3: f64,
 }
 
-/// Every run of a campaign, with what they have in common.
+/// Every run of a campaign, with what they have in common and what is odd about them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawCampaign {
     /// Name of the section.
@@ -182,4 +184,14 @@ pub struct RawCampaign {
     pub forces: Option<Vec<Dof>>,
     /// The runs, in the order of the campaign file.
     pub runs: Vec<RawRun>,
+    /// What did not stop reading.
+    pub findings: Vec<RunFinding>,
+}
+
+impl RawCampaign {
+    /// The findings of this weight in words.
+    pub fn words(&self, severity: FindingSeverity) -> Vec<String> {
+        let of_weight = self.findings.iter().filter(|f| f.severity == severity);
+        of_weight.map(ToString::to_string).collect()
+    }
 }

@@ -5,7 +5,7 @@
 //! Forces are self-excited ones per unit length, N/m and N·m/m. Reading streams the file in blocks of bounded size.
 
 use super::record_format::{RecordFile, read_head, text, write_head};
-use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
+use super::records::{Record, RecordHeader, RecordSource};
 use crate::error::{Error, Place, Result, counted, ensure, without_control_characters};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -46,7 +46,7 @@ impl RecordSource for RecordFile {
     /// [`Error::Io`]; [`Error::Input`] with file and line: text or NaN in place of a number, a row with more or fewer
     /// columns, a gap in time or an uneven step, another sampling frequency than stated, fewer than
     /// 64 samples.
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+    fn for_each_block(&self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
         let io = |e| Error::io(&self.path, e);
         let mut file = File::open(&self.path).map_err(io)?;
         file.seek(SeekFrom::Start(self.start)).map_err(io)?;
@@ -59,7 +59,7 @@ impl RecordSource for RecordFile {
                 break;
             }
             rows.push(&line).map_err(|e| e.in_file(&self.path))?;
-            if rows.motion[0].len() == BLOCK_SAMPLES {
+            if rows.channels[0].len() == BLOCK_SAMPLES {
                 rows.pass_on(f)?;
             }
         }
@@ -89,10 +89,8 @@ pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()
     write_head(header, out).map_err(io)?;
     let mut first = 0;
     record.for_each_block(&mut |block| {
-        let channels = block.motion.iter().chain(block.force);
-        let channels: Vec<&[f64]> = channels.map(Vec::as_slice).collect();
-        write_rows(out, header.sampling_hz, first, &channels).map_err(io)?;
-        first += channels.first().map_or(0, |c| c.len());
+        write_rows(out, header.sampling_hz, first, block).map_err(io)?;
+        first += block.first().map_or(0, |c| c.len());
         Ok(())
     })?;
     out.flush().map_err(io)
@@ -146,8 +144,8 @@ fn cells(line: &str) -> impl Iterator<Item = &str> {
 struct RecordRows<'a> {
     file: &'a RecordFile,
     line: usize,
-    motion: Vec<Vec<f64>>,
-    force: Vec<Vec<f64>>,
+    /// Motions, then forces.
+    channels: Vec<Vec<f64>>,
     read: usize,
     first_time: f64,
     last_time: f64,
@@ -155,26 +153,23 @@ struct RecordRows<'a> {
 
 impl<'a> RecordRows<'a> {
     fn new(file: &'a RecordFile) -> Self {
-        let block = || vec![Vec::with_capacity(BLOCK_SAMPLES); file.header.dofs.len()];
         Self {
             file,
             line: file.names_line,
-            motion: block(),
-            force: block(),
+            channels: vec![Vec::with_capacity(BLOCK_SAMPLES); 2 * file.header.dofs.len()],
             read: 0,
             first_time: 0.0,
             last_time: 0.0,
         }
     }
 
-    fn pass_on(&mut self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
-        if self.motion[0].is_empty() {
+    fn pass_on(&mut self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
+        if self.channels[0].is_empty() {
             return Ok(());
         }
-        let (motion, force) = (&self.motion, &self.force);
-        f(RecordBlock { motion, force })?;
-        let channels = self.motion.iter_mut().chain(&mut self.force);
-        channels.for_each(Vec::clear);
+        let channels: Vec<&[f64]> = self.channels.iter().map(Vec::as_slice).collect();
+        f(&channels)?;
+        self.channels.iter_mut().for_each(Vec::clear);
         Ok(())
     }
 
@@ -195,11 +190,9 @@ impl<'a> RecordRows<'a> {
                 let place = Place::line(self.line).column(&self.file.names[column]);
                 Error::input(place, "a finite number", format!("`{}`", cell.trim()))
             })?;
-            let n = self.motion.len();
             match channel {
                 None => self.check_time(value)?,
-                Some(i) if *i < n => self.motion[*i].push(value),
-                Some(i) => self.force[*i - n].push(value),
+                Some(i) => self.channels[*i].push(value),
             }
         }
         if cells.next().is_some() {

@@ -69,6 +69,18 @@ impl RecordHeader {
         ensure(same, place, expected, format_args!("{} m", self.width_m))
     }
 
+    /// Refuses channels from a sample on that are not those of the header, all of one length.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) naming the record.
+    pub fn check_channels(&self, from: usize, are_its_own: bool) -> Result<()> {
+        let (name, n) = (&self.name, self.dofs.len());
+        let place = format_args!("record {name}, from sample {from}");
+        let expected = format_args!("{n} motions and {n} forces of one length");
+        let found = "channels of another number or length";
+        ensure(are_its_own, place, expected, found)
+    }
+
     /// Refuses segments that do not lie one after the other within `samples`.
     ///
     /// # Errors
@@ -142,22 +154,14 @@ impl RecordHeader {
     }
 }
 
-/// A run of samples, one slice per channel in the order of [`RecordHeader::dofs`], all of one length.
-#[derive(Debug, Clone, Copy)]
-pub struct RecordBlock<'a> {
-    /// Motion: m, rad.
-    pub motion: &'a [Vec<f64>],
-    /// Self-excited force per unit length: N/m, N·m/m.
-    pub force: &'a [Vec<f64>],
-}
-
 /// Something that yields a record block by block, as often as asked, in bounded memory.
 pub trait RecordSource: Sync {
     /// Everything but the samples.
     fn header(&self) -> &RecordHeader;
 
-    /// Calls `f` with consecutive blocks from the first sample to the last.
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()>;
+    /// Calls `f` with consecutive blocks from the first sample to the last: channels of one length, the motions (m, rad) and then the
+    /// self-excited forces per unit length (N/m, N·m/m), each in the order of [`RecordHeader::dofs`].
+    fn for_each_block(&self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()>;
 }
 
 /// A record in memory.
@@ -199,8 +203,7 @@ impl Record {
         let mut motion = vec![Vec::new(); header.dofs.len()];
         let mut force = motion.clone();
         source.for_each_block(&mut |block| {
-            let parts = block.motion.iter().chain(block.force);
-            for (all, part) in motion.iter_mut().chain(&mut force).zip(parts) {
+            for (all, part) in motion.iter_mut().chain(&mut force).zip(block) {
                 all.extend_from_slice(part);
             }
             Ok(())
@@ -218,8 +221,10 @@ impl RecordSource for Record {
         &self.header
     }
 
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
-        let (motion, force) = (&self.motion, &self.force);
-        f(RecordBlock { motion, force })
+    fn for_each_block(&self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
+        self.header
+            .check_channels(0, self.motion.len() == self.force.len())?;
+        let channels = self.motion.iter().chain(&self.force);
+        f(&channels.map(Vec::as_slice).collect::<Vec<_>>())
     }
 }

@@ -8,7 +8,7 @@ use crate::identification::testing::{onset_m_s, records, records_alone};
 use crate::identification::{FitProgress, TimeWeights};
 use crate::trained_model::Model;
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
+use crate::wind_tunnel::{Record, RecordHeader};
 
 fn quiet(_: FitProgress) {}
 
@@ -225,17 +225,13 @@ impl RecordSource for Chunks {
         &self.0.header
     }
 
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+    fn for_each_block(&self, f: &mut dyn FnMut(&[&[f64]]) -> Result<()>) -> Result<()> {
         let mut at = 0;
         let samples = self.0.motion[0].len();
         while at < samples {
             let end = (at + 999).min(samples);
-            let cut = |c: &[Vec<f64>]| c.iter().map(|v| v[at..end].to_vec()).collect::<Vec<_>>();
-            let (motion, force) = (cut(&self.0.motion), cut(&self.0.force));
-            f(RecordBlock {
-                motion: &motion,
-                force: &force,
-            })?;
+            let channels = self.0.motion.iter().chain(&self.0.force);
+            f(&channels.map(|c| &c[at..end]).collect::<Vec<_>>())?;
             at = end;
         }
         Ok(())

@@ -11,7 +11,7 @@ use crate::numbered::numbered;
 use crate::section::Dof;
 use crate::signal::resampled;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource};
+use crate::wind_tunnel::{RecordHeader, RecordSource};
 use std::f64::consts::TAU;
 
 /// A motion counts as still while it is closer to its first value than this fraction of its largest departure from it:
@@ -154,14 +154,15 @@ impl DimensionlessRecord {
         let pressure = 0.5 * header.air_density_kg_m3 * speed * speed;
         let mut signals = Signals::new(dofs.len());
         record.for_each_block(&mut |block| {
-            let read = signals.len();
-            check_lengths(&header.name, &block, dofs.len(), read)?;
+            let (read, n) = (signals.len(), dofs.len());
+            let is_whole = block.len() == 2 * n && block.iter().all(|c| c.len() == block[0].len());
+            header.check_channels(read, is_whole)?;
             let (mut motions, mut forces) = (Vec::new(), Vec::new());
             for dof in dofs {
                 let channel = index_of(&header.dofs, *dof, "dofs")?;
                 let force_scale = 1.0 / (pressure * dof.force_scale(width));
-                motions.push((&block.motion[channel], dof.motion_scale(width)));
-                forces.push((&block.force[channel], force_scale));
+                motions.push((block[channel], dof.motion_scale(width)));
+                forces.push((block[n + channel], force_scale));
             }
             for (motion, force) in motions.iter().zip(&forces) {
                 for ((from, factor), what) in [(motion, "motion"), (force, "force")] {
@@ -246,17 +247,6 @@ impl DimensionlessRecord {
         signals.extend(channels[0].len(), |c, k| channels[c][k])?;
         Ok((Some(signals.finish()?), self.step_s * ratio))
     }
-}
-
-fn check_lengths(name: &str, block: &RecordBlock<'_>, n: usize, read: usize) -> Result<()> {
-    let rows = block.motion.first().map_or(0, Vec::len);
-    let mut channels = block.motion.iter().chain(block.force);
-    ensure(
-        block.motion.len() == n && block.force.len() == n && channels.all(|c| c.len() == rows),
-        format_args!("record {name}, from sample {read}"),
-        format_args!("{n} motions and {n} forces of one length"),
-        "channels of another number or length",
-    )
 }
 
 impl Signals {

@@ -120,12 +120,11 @@ impl Signals {
         let header = record.header();
         let mut signals = Signals::new(header.dofs.len());
         record.for_each_block(&mut |block| {
-            let channels: Vec<&Vec<f64>> = block.motion.iter().chain(block.force).collect();
-            for (c, channel) in channels.iter().enumerate() {
+            for (c, channel) in block.iter().enumerate() {
                 let place = format!("record {}, channel {}", header.name, c + 1);
                 check_finite(&place, signals.len(), channel)?;
             }
-            signals.extend(channels[0].len(), |c, k| channels[c][k])
+            signals.extend(block[0].len(), |c, k| block[c][k])
         })?;
         signals.finish()
     }

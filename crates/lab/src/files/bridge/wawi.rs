@@ -61,6 +61,8 @@ fn data(
         };
         nodes.push((format!("{name:.0}"), [x, y, z]));
     }
+    let (place, any) = ("element.json: node_matrix", !nodes.is_empty());
+    ensure(any, place, "at least one node", "none")?;
     let omega = frequencies(&modal)?;
     let rows = modal.phi.full;
     let (count, wanted) = (nodes.len(), 6 * nodes.len());
@@ -99,5 +101,20 @@ fn frequencies(modal: &Modal) -> Result<Vec<f64>> {
         (Some(omega), _) => of("omega_n", omega, false),
         (None, Some(k)) => of("k", k, true),
         (None, None) => Err(Error::input("", "`k` or `omega_n`", "neither")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bridge_without_nodes_is_refused() {
+        let element = serde_json::from_str(r#"{ "node_matrix": [] }"#).unwrap();
+        let modal = r#"{ "m": [1.0], "omega_n": [2.0], "phi": { "full": [] } }"#;
+        let modal = serde_json::from_str(modal).unwrap();
+        let said = data(element, modal, &Frame::identity()).unwrap_err();
+        let expected = "element.json: node_matrix: expected at least one node, found none";
+        assert_eq!(said.to_string(), expected);
     }
 }

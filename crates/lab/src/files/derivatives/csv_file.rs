@@ -75,7 +75,7 @@ pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
 /// A table from text in our own format, with what the caller states, and its convention.
 ///
 /// # Errors
-/// As [`read_table`](super::read_table); a stated convention that contradicts the text.
+/// As [`read_table_with`](super::read_table_with); a stated convention that contradicts the text.
 pub fn parse_csv_in(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Convention)> {
     let head = read_head(text)?;
     let mut reader = table_reader(text);

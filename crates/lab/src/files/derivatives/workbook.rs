@@ -44,13 +44,13 @@ const WIDTH_TOLERANCE: f64 = 0.01;
 pub(super) const SPEEDS: (&str, &str) = ("Mean wind velocity", "MeanWind_");
 pub(super) const REDUCED_VELOCITIES: (&str, &str) = ("Reduced Velocities", "Vred_");
 pub(super) const DERIVATIVES: (&str, &str) = ("Aerodynamic Derivatives", "");
+const KINDS: [(&str, &str); 3] = [SPEEDS, REDUCED_VELOCITIES, DERIVATIVES];
 
 /// Whether the workbook is to be read by the three sheets of NTNU's.
 pub(super) fn has_three_sheets(book: &OpenWorkbook) -> bool {
-    let kinds = [SPEEDS, REDUCED_VELOCITIES, DERIVATIVES];
     let names = book.sheet_names();
     let named = |kind: &str| names.iter().any(|n| n.trim().eq_ignore_ascii_case(kind));
-    kinds.iter().any(|(kind, _)| named(kind))
+    KINDS.iter().any(|(kind, _)| named(kind))
 }
 
 /// Reads the three sheets of an opened workbook.
@@ -140,18 +140,15 @@ fn parse_note<T: std::str::FromStr<Err = Error>>(notes: &Notes, key: &str) -> Re
 type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 
 fn read_sheets(book: &mut OpenWorkbook, convention: &Convention) -> Result<Points> {
-    let mut sheet = |kind: (&str, &str)| -> Result<Sheet> {
-        sheet_of(book, kind.0)?.ok_or_else(|| {
+    let mut sheets = Vec::new();
+    for kind in KINDS {
+        let sheet = sheet_of(book, kind.0)?.ok_or_else(|| {
             let expected = format!("a sheet `{}`", kind.0);
             let found = format!("`{}`", book.sheet_names().join("`, `"));
             Error::input("workbook", expected, found)
-        })
-    };
-    let sheets = [
-        (sheet(SPEEDS)?, SPEEDS),
-        (sheet(REDUCED_VELOCITIES)?, REDUCED_VELOCITIES),
-        (sheet(DERIVATIVES)?, DERIVATIVES),
-    ];
+        });
+        sheets.push((sheet?, kind));
+    }
     // tests without sway have no columns for what it couples; a column in one sheet must be in all
     let names = |d| convention.notation.name_of(d);
     let is_given = |d: &Derivative| {

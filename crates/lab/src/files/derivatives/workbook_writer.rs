@@ -13,11 +13,6 @@ use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 /// One number of a test point.
 type Number = fn(&ExpressedPoint) -> f64;
 
-/// The bytes of a workbook with the figures of `table`, in this project's convention, which is NTNU's.
-pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
-    workbook_bytes_in(table, &Convention::default())
-}
-
 /// The bytes of a workbook with the figures of `table` in `convention`: columns called as in the notation, the argument
 /// in the sheet of reduced velocities; the notes state it, and the reader obeys them.
 ///
@@ -145,7 +140,11 @@ mod tests {
     fn round_trip(table: &DerivativeTable) -> DerivativeTable {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("AerodynamicDerivatives_round.xlsx");
-        std::fs::write(&path, workbook_bytes(table).unwrap()).unwrap();
+        std::fs::write(
+            &path,
+            workbook_bytes_in(table, &Convention::default()).unwrap(),
+        )
+        .unwrap();
         let options = ReadOptions {
             width_m: Some(table.width_m),
             ..ReadOptions::default()
@@ -177,7 +176,11 @@ mod tests {
         // and without being told the width, which the frequencies give
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");
-        std::fs::write(&path, workbook_bytes(&table).unwrap()).unwrap();
+        std::fs::write(
+            &path,
+            workbook_bytes_in(&table, &Convention::default()).unwrap(),
+        )
+        .unwrap();
         let (again, _) = read_table_with(&path, &ReadOptions::default()).unwrap();
         assert!((again.width_m / table.width_m - 1.0).abs() < 1e-12);
     }
@@ -202,7 +205,9 @@ mod tests {
             (d, points)
         });
         let bare = DerivativeTable::new("bare", 0.5, Default::default(), bare.collect()).unwrap();
-        let said = workbook_bytes(&bare).unwrap_err().to_string();
+        let said = workbook_bytes_in(&bare, &Convention::default())
+            .unwrap_err()
+            .to_string();
         assert!(said.contains("(a .csv needs none)"), "{said}");
     }
 

@@ -178,7 +178,7 @@ fn index(i: usize) -> u32 {
     u32::try_from(i).unwrap_or(u32::MAX)
 }
 
-fn no_workbook(error: &dyn std::fmt::Display) -> Error {
+pub(super) fn no_workbook(error: &dyn std::fmt::Display) -> Error {
     Error::input("", "a workbook (.xlsx, .xls, .ods)", error.to_string())
 }
 

@@ -4,7 +4,7 @@
 //! unless all of it is numbers. A row of units may follow, or units may stand behind the names: `y [mm]`, `Fx (N)`.
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
-use super::channels::{Attribute, ChannelSet, check_count, no_group};
+use super::channels::{Attribute, Channel, ChannelSet, check_count, no_group};
 use crate::error::{Error, Place, Result, counted};
 use crate::files::text::{line_at, refuse_utf16, separator};
 use std::borrow::Cow;
@@ -115,10 +115,8 @@ fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
 /// Columns being filled.
 struct ChannelTable {
     decimal_comma: bool,
-    names: Vec<String>,
-    units: Vec<Option<String>>,
-    /// `None` for a column of text.
-    columns: Vec<Option<Vec<f64>>>,
+    /// Each channel, and whether it is of text.
+    columns: Vec<(Channel, bool)>,
     rows: usize,
     units_taken: bool,
     /// Comma or point of the first number that has one.
@@ -130,21 +128,22 @@ impl ChannelTable {
     fn begin(row: &csv::ByteRecord, decimal_comma: bool) -> Self {
         let numbers = row.iter().map(|cell| number(cell, decimal_comma));
         let numbers: Option<Vec<f64>> = numbers.collect();
-        let cells = row.iter().map(decoded);
-        let (names, units) = match &numbers {
-            Some(_) => (1..=row.len())
-                .map(|i| (format!("column[{i}]"), None))
-                .unzip(),
-            None => cells.map(|cell| name_and_unit(cell.trim())).unzip(),
+        let column = |(i, cell): (usize, &[u8])| {
+            let (name, unit) = match &numbers {
+                Some(_) => (format!("column[{}]", i + 1), None),
+                None => name_and_unit(decoded(cell).trim()),
+            };
+            let samples = numbers.iter().map(|row| row[i]).collect();
+            let channel = Channel {
+                name,
+                samples,
+                unit,
+            };
+            (channel, false)
         };
         Self {
             decimal_comma,
-            names,
-            units,
-            columns: match &numbers {
-                Some(numbers) => numbers.iter().map(|x| Some(vec![*x])).collect(),
-                None => vec![Some(Vec::new()); row.len()],
-            },
+            columns: row.iter().enumerate().map(column).collect(),
             rows: usize::from(numbers.is_some()),
             units_taken: numbers.is_some(),
             mark: None,
@@ -153,36 +152,35 @@ impl ChannelTable {
 
     fn take(&mut self, row: &csv::ByteRecord, line: usize) -> Result<()> {
         // a separator at the end of every line gives an empty cell more
-        let mut surplus = self.names.len()..row.len();
-        if row.len() < self.names.len() || surplus.any(|c| !row[c].trim_ascii().is_empty()) {
-            let expected = format!("{} as in the header", counted(self.names.len(), "column"));
+        let columns = self.columns.len();
+        let mut surplus = columns..row.len();
+        if row.len() < columns || surplus.any(|c| !row[c].trim_ascii().is_empty()) {
+            let expected = format!("{} as in the header", counted(columns, "column"));
             let found = row.len().to_string();
             return Err(Error::input(Place::line(line), expected, found));
         }
         if self.rows == 0 && self.take_units(row) {
             return Ok(());
         }
-        let place = |c: usize| Place::line(line).column(&self.names[c]);
-        for (c, (column, cell)) in self.columns.iter_mut().zip(row).enumerate() {
-            let Some(samples) = column else {
-                continue;
-            };
+        for ((channel, is_text), cell) in self.columns.iter_mut().zip(row) {
+            let place = |name: &str| Place::line(line).column(name);
             match number(cell, self.decimal_comma) {
+                _ if *is_text => {}
                 Some(x) => {
-                    samples.push(x);
+                    channel.samples.push(x);
                     if self.decimal_comma {
-                        one_mark(&mut self.mark, cell, || place(c))?;
+                        one_mark(&mut self.mark, cell, || place(&channel.name))?;
                     }
                 }
-                None if self.rows == 0 => *column = None,
+                None if self.rows == 0 => *is_text = true,
                 None => {
                     let found = format!("`{}`", String::from_utf8_lossy(cell));
-                    return Err(Error::input(place(c), "a number", found));
+                    return Err(Error::input(place(&channel.name), "a number", found));
                 }
             }
         }
         self.rows += 1;
-        check_count(Place::line(line), (self.rows * self.names.len()) as u64)
+        check_count(Place::line(line), (self.rows * columns) as u64)
     }
 
     /// Takes a row without any number as units.
@@ -196,19 +194,19 @@ impl ChannelTable {
             let text = text.trim().trim_matches(['[', ']', '(', ')']).to_owned();
             (!text.is_empty()).then_some(text)
         };
-        for (unit, cell) in self.units.iter_mut().zip(row) {
-            *unit = unit.take().or_else(|| stated(cell));
+        for ((channel, _), cell) in self.columns.iter_mut().zip(row) {
+            channel.unit = channel.unit.take().or_else(|| stated(cell));
         }
         self.units_taken = true;
         true
     }
 
     fn finish(self, set: &mut ChannelSet) {
-        for ((name, unit), column) in self.names.into_iter().zip(self.units).zip(self.columns) {
-            match column {
-                Some(samples) if !name.is_empty() => set.push(name, samples, unit),
-                Some(_) => {}
-                None => set.leave_out(name, "text"),
+        for (channel, is_text) in self.columns {
+            match is_text {
+                true => set.leave_out(channel.name, "text"),
+                false if channel.name.is_empty() => {}
+                false => set.channels.push(channel),
             }
         }
     }

@@ -13,7 +13,7 @@ thread_local! {
 static HOOK: Once = Once::new();
 
 /// The result of `body`; `None` when it panicked.
-pub(super) fn guarded<T>(body: impl FnOnce() -> T) -> Option<T> {
+pub(crate) fn guarded<T>(body: impl FnOnce() -> T) -> Option<T> {
     HOOK.call_once(|| {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {

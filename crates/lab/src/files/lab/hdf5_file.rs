@@ -2,7 +2,7 @@
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::columns::push_array;
-use super::guarded::guarded;
+use super::guarded;
 use crate::error::{Error, Result};
 use hdf5_pure::{AttrValue, DType, Dataset, File, FormatError, Group};
 use std::collections::HashMap;
@@ -155,9 +155,9 @@ impl Hdf5Reader {
     }
 
     fn take_dataset(&mut self, dataset: &Dataset, path: &str) -> Result<()> {
+        let unknown = |e| format!("of a kind that is not known: {e}");
         if let Some(e) = dataset.chunk_shape().err().filter(is_unknown) {
-            self.set
-                .leave_out(path, format!("of a kind that is not known: {e}"));
+            self.set.leave_out(path, unknown(e));
             return Ok(());
         }
         let shape = dataset.shape().map_err(|e| corrupt(path, e))?;
@@ -172,17 +172,15 @@ impl Hdf5Reader {
         }
         let values = match dataset.read_f64() {
             Err(e) if is_unknown(&e) => {
-                self.set
-                    .leave_out(path, format!("of a kind that is not known: {e}"));
+                self.set.leave_out(path, unknown(e));
                 return Ok(());
             }
             read => read.map_err(|e| corrupt(path, e))?,
         };
         let shape: Vec<usize> = shape.iter().map(|n| *n as usize).collect();
-        let count: usize = shape.iter().product();
-        if values.len() != count {
-            let found = format!("{} of {count} numbers", values.len());
-            return Err(corrupt(path, found));
+        let (count, read) = (shape.iter().product::<usize>(), values.len());
+        if read != count {
+            return Err(corrupt(path, format!("{read} of {count} numbers")));
         }
         let attributes = dataset.attrs().unwrap_or_default();
         let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);
@@ -236,14 +234,12 @@ fn is_number(kind: &DType) -> bool {
 
 /// The units that a dataset states: none, one for all columns, or one per column.
 fn units(attributes: &HashMap<String, AttrValue>) -> Vec<String> {
-    let stated = attributes
-        .iter()
-        .find(|(name, _)| ["unit", "units"].contains(&name.to_lowercase().as_str()));
-    match stated.map(|(_, v)| (v.as_str(), v.as_strings())) {
-        Some((Some(one), _)) => vec![one.to_owned()],
-        Some((None, Some(all))) => all.to_vec(),
-        _ => Vec::new(),
-    }
+    let mut attributes = attributes.iter();
+    let named = |name: &str| ["unit", "units"].contains(&name.to_lowercase().as_str());
+    let stated = attributes.find(|(name, _)| named(name)).map(|(_, v)| v);
+    let one = stated.and_then(|v| Some(vec![v.as_str()?.to_owned()]));
+    let all = || stated.and_then(|v| Some(v.as_strings()?.to_vec()));
+    one.or_else(all).unwrap_or_default()
 }
 
 fn attribute(value: &AttrValue) -> Option<Attribute> {

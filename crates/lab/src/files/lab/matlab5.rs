@@ -5,7 +5,7 @@
 
 use super::channels::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
 use super::columns::push_array;
-use super::guarded::guarded;
+use super::guarded;
 use crate::error::{Error, Result, ensure};
 use matrw::{MatVariable, MatlabType};
 use std::io::Read;
@@ -70,13 +70,9 @@ fn variables(mut bytes: Vec<u8>) -> Result<Vec<(String, Option<MatVariable>)>> {
     let mut read = Vec::with_capacity(elements.len());
     for Range { start, end } in elements {
         let own = &bytes[start..end];
-        let head = &MatlabElement { bytes: own, little }.inflated(NAME_WITHIN);
-        let name = MatlabElement {
-            bytes: head,
-            little,
-        }
-        .name();
-        let name = name.and_then(|at| String::from_utf8(head[at].to_vec()).ok());
+        let own = &MatlabElement { bytes: own, little }.inflated(NAME_WITHIN);
+        let name = MatlabElement { bytes: own, little }.name();
+        let name = name.and_then(|at| String::from_utf8(own[at].to_vec()).ok());
         let name = name.unwrap_or_else(|| format!("byte {start}"));
         // the header takes the place of what has been read: nothing is copied
         bytes[start - HEADER_BYTES..start].copy_from_slice(&header);

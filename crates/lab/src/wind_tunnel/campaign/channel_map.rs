@@ -135,10 +135,8 @@ impl ChannelMap {
 
     fn validate_cell(&self, cell: &str) -> Result<()> {
         let place = format!("channels.cells.{cell}");
-        let map = self
-            .cells
-            .get(cell)
-            .ok_or_else(|| Error::input("channels.cells", format!("a table `{cell}`"), "none"))?;
+        let none = || Error::input("channels.cells", format!("a table `{cell}`"), "none");
+        let map = self.cells.get(cell).ok_or_else(none)?;
         let all = CELL_CHANNELS.join(", ");
         let all = format!("{all} (`\"none\"` for one not measured)");
         if let Some(unknown) = map.keys().find(|k| !CELL_CHANNELS.contains(&k.as_str())) {
@@ -160,10 +158,9 @@ impl ChannelMap {
 
 /// What a channel of a cell measures.
 pub(super) fn cell_quantity(key: &str) -> Quantity {
-    if key.starts_with('f') {
-        Quantity::Force
-    } else {
-        Quantity::Moment
+    match key.starts_with('f') {
+        true => Quantity::Force,
+        false => Quantity::Moment,
     }
 }
 

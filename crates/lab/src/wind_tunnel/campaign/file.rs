@@ -202,10 +202,8 @@ impl Campaign {
                 Ok(Rig {
                     model_length_m: positive("section.length_m", length)?,
                     model_width_m: positive("section.width_m", width)?,
-                    model_mass_kg: None,
-                    model_inertia_kg_m2: None,
-                    centre_of_mass_m: None,
                     cells: vec![SectionForces::cell()],
+                    ..Rig::default()
                 })
             }
             (rig, _) => {
@@ -322,10 +320,9 @@ impl RunBlock {
         if by_file {
             return Ok(());
         }
-        let where_stated = if self.air.is_empty() {
-            "air".to_owned()
-        } else {
-            key("air")
+        let where_stated = match self.air.is_empty() {
+            true => "air".to_owned(),
+            false => key("air"),
         };
         Air::over(self.air, common).density(&where_stated).map(drop)
     }

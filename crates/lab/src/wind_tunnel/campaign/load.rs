@@ -6,27 +6,9 @@ use super::file::{Campaign, RunBlock};
 use super::findings::{RunFinding, file_hints, run_findings};
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, ensure, positive};
-use crate::plausibility::FindingSeverity;
 use crate::signal::mean;
 use crate::wind_tunnel::{RawCampaign, RawRun, Rig};
 use aerodeck_core::threads;
-
-/// A campaign with all its recordings, and what is odd about them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CampaignReading {
-    /// The runs.
-    pub raw: RawCampaign,
-    /// What did not stop reading.
-    pub findings: Vec<RunFinding>,
-}
-
-impl CampaignReading {
-    /// The findings of this weight in words.
-    pub fn words(&self, severity: FindingSeverity) -> Vec<String> {
-        let of_weight = self.findings.iter().filter(|f| f.severity == severity);
-        of_weight.map(ToString::to_string).collect()
-    }
-}
 
 impl Campaign {
     /// Reads all recordings.
@@ -35,7 +17,7 @@ impl Campaign {
     /// [`Error::Io`](crate::error::Error::Io); [`Error::Input`](crate::error::Error::Input) naming run, recording, channel and sample: a channel that the file does not
     /// hold (with those that it does), channels of unequal length or rate, samples that are no numbers, a unit that
     /// does not fit, a mean speed that is not positive, air of unknown density. The errors of all runs, in their order.
-    pub fn load(&self) -> Result<CampaignReading> {
+    pub fn load(&self) -> Result<RawCampaign> {
         let map = self.channel_map();
         let rig = self.rig()?;
         let load = |run: &RunBlock| {
@@ -47,15 +29,15 @@ impl Campaign {
         each_once(&runs)?;
         let mut findings = file_hints(self);
         findings.extend(found.into_iter().flatten());
-        let raw = RawCampaign {
+        Ok(RawCampaign {
             section: self.section.name.clone(),
             source: self.section.source.clone(),
             licence: self.section.licence.clone(),
             forces: map.section.as_ref().map(SectionForces::dofs),
             rig,
             runs,
-        };
-        Ok(CampaignReading { raw, findings })
+            findings,
+        })
     }
 
     /// Reads both recordings of a run; what is odd in them.
@@ -100,10 +82,9 @@ impl Campaign {
     fn density(&self, map: &ChannelMap, run: &RunBlock, by_file: Air) -> Result<f64> {
         let common = Air::over(by_file, self.air);
         let has_map = map.air_density.is_some() || map.temperature.is_some();
-        let place = if run.air.is_empty() && !has_map {
-            "air".to_owned()
-        } else {
-            format!("air of run `{}`", run.name)
+        let place = match run.air.is_empty() && !has_map {
+            true => "air".to_owned(),
+            false => format!("air of run `{}`", run.name),
         };
         Air::over(run.air, common).density(&place)
     }

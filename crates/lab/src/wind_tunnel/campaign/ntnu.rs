@@ -21,12 +21,15 @@ use nalgebra::{Matrix3, Vector3};
 const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
 /// Cells of the layout.
 pub(super) const CELLS: usize = 4;
+/// Forces with moments about the places of the cells, and about the centre.
+const FORCES: &str = "forces_global_coord";
+const CENTRE_FORCES: &str = "forces_global_coord_center";
 
 /// The map for the cells of `rig`, of which there are at most [`CELLS`].
 pub(super) fn channel_map(rig: &Rig) -> ChannelMap {
     let motion = |column: usize, unit| Some(ChannelRef::new(format!("motion[{column}]"), unit));
     let of_cell = |cell: usize, channel: usize| {
-        let name = format!("forces_global_coord[{}]", 6 * cell + channel + 1);
+        let name = format!("{FORCES}[{}]", 6 * cell + channel + 1);
         ChannelRef::new(name, cell_unit(CELL_CHANNELS[channel]))
     };
     ChannelMap {
@@ -64,47 +67,31 @@ pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
     for run in &made.raw.runs {
         let still = run.still_air.iter().map(|r| ("still", r));
         for (what, recording) in std::iter::once(("wind", &run.in_wind)).chain(still) {
-            let n = recording.sample_count() as u64;
             let text = |words: &str| AttrValue::VarLenString(words.to_owned());
-            let units = |names: &[&str]| {
-                AttrValue::VarLenStringArray(names.iter().map(|u| (*u).to_owned()).collect())
-            };
-            let of_cells = ["N", "N", "N", "Nm", "Nm", "Nm"].repeat(CELLS);
             let mut group = file.create_group(&format!("{}-{what}", run.name));
             group.set_attr("test_type", text("Forced vibration"));
             group.set_attr("test operator", text("aerodeck, virtual campaign"));
             group.set_attr("sampling frequency", AttrValue::F64(recording.sampling_hz));
             group.set_attr("forced motion", text(&Dof::names(&run.motion)));
             let density = run.air_density_kg_m3;
-            let mut number = |name: &str, value: f64, unit: &str| {
-                group
-                    .create_dataset(name)
-                    .with_f64_data(&[value])
-                    .with_shape(&[])
-                    .set_attr("units", units(&[unit]));
-            };
-            number("temperature", temperature_c(density), "C");
-            number("air_density", density, "kg/m^3");
-            group
-                .create_dataset("wind_velocity")
-                .with_f64_data(&recording.wind_speed_m_s)
-                .with_shape(&[n])
-                .set_attr("units", units(&["m/s"]));
-            group
-                .create_dataset("motion")
-                .with_f64_data(&motion(recording))
-                .with_shape(&[n, 3])
-                .set_attr("units", units(&["m", "m", "rad"]));
-            for (name, about_centre) in [
-                ("forces_global_coord", false),
-                ("forces_global_coord_center", true),
-            ] {
+            let (n, channels) = (recording.sample_count() as u64, 6 * CELLS as u64);
+            let of_cells = &["N", "N", "N", "Nm", "Nm", "Nm"].repeat(CELLS)[..];
+            let at_cells = |about_centre| forces(recording, rig, about_centre);
+            let wind = recording.wind_speed_m_s.clone();
+            let datasets: [(&str, Vec<f64>, &[u64], &[&str]); 6] = [
+                ("temperature", vec![temperature_c(density)], &[], &["C"]),
+                ("air_density", vec![density], &[], &["kg/m^3"]),
+                ("wind_velocity", wind, &[n], &["m/s"]),
+                ("motion", motion(recording), &[n, 3], &["m", "m", "rad"]),
+                (FORCES, at_cells(false), &[n, channels], of_cells),
+                (CENTRE_FORCES, at_cells(true), &[n, channels], of_cells),
+            ];
+            for (name, values, shape, units) in datasets {
+                let units = units.iter().map(|u| (*u).to_owned()).collect();
                 let dataset = group.create_dataset(name);
-                dataset
-                    .with_f64_data(&forces(recording, rig, about_centre))
-                    .with_shape(&[n, 6 * CELLS as u64])
-                    .set_attr("units", units(&of_cells));
-                if about_centre {
+                dataset.with_f64_data(&values).with_shape(shape);
+                dataset.set_attr("units", AttrValue::VarLenStringArray(units));
+                if name == CENTRE_FORCES {
                     dataset.set_attr("eccentricity", AttrValue::F64Array(eccentricity(rig)));
                 }
             }

@@ -57,27 +57,14 @@ const UNITS: &[(&str, Quantity, f64)] = &[
 ];
 
 impl Quantity {
-    /// Name in words.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Length => "a length",
-            Self::Angle => "an angle",
-            Self::Force => "a force",
-            Self::Moment => "a moment",
-            Self::Speed => "a speed",
-            Self::Time => "a time",
-            Self::Density => "a density",
-            Self::Temperature => "a temperature",
-            Self::Pressure => "a pressure",
-        }
-    }
-
     /// Factor from `unit` to SI (°C for temperatures).
     pub(crate) fn factor(self, place: &str, unit: &str) -> Result<f64> {
         self.factor_of(unit).ok_or_else(|| {
             let own = UNITS.iter().filter(|(_, quantity, _)| *quantity == self);
             let own: Vec<&str> = own.map(|(name, ..)| *name).collect();
-            let expected = format!("a unit of {}: {}", self.name(), own.join(", "));
+            let article = if self == Self::Angle { "an" } else { "a" };
+            let name = format!("{self:?}").to_lowercase();
+            let expected = format!("a unit of {article} {name}: {}", own.join(", "));
             Error::input(place, expected, format!("`{unit}`"))
         })
     }
@@ -97,16 +84,12 @@ pub(super) fn is_known(unit: &str) -> bool {
     UNITS.iter().any(|(name, ..)| *name == plain)
 }
 
-/// Endings of a name that say its unit: `y_mm`, `lift kN`. Of the units of one letter only N is one beyond doubt.
-const ENDINGS: &[&str] = &[
-    "mm", "cm", "um", "rad", "mrad", "deg", "N", "mN", "kN", "Nm", "Nmm", "mNm", "Ncm", "kNm",
-    "ms", "Pa", "hPa", "mbar", "kPa",
-];
-
-/// The unit that the name of a channel ends with, if it does: `y_mm`, `lift, kN`.
+/// The unit that the name of a channel ends with, if it does: `y_mm`, `lift, kN`. Of the units of one letter only N is one beyond doubt.
 pub(super) fn unit_in_name(name: &str) -> Option<&str> {
     let (_, ending) = name.rsplit_once(['_', ' ', ',', '/', '-'])?;
-    ENDINGS.contains(&ending).then_some(ending)
+    let is_certain = ending == "N" || ending.chars().nth(1).is_some();
+    let is_unit = UNITS.iter().any(|(name, ..)| *name == ending);
+    (is_certain && is_unit).then_some(ending)
 }
 
 /// Spellings of one unit as one: `N·m`, `N m`, `N*m`, `kg/m^3`, `kg/m³`, `degC`.

@@ -11,6 +11,7 @@ mod write;
 use super::*;
 use crate::error::Result;
 use crate::section::Dof;
+use crate::wind_tunnel::RawCampaign;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -84,7 +85,7 @@ fn still(i: usize, row: &mut [f64; 5]) {
 }
 
 /// Reads a campaign from its text and the texts of its two recordings.
-fn load(text: &str, a: &str, b: &str) -> Result<CampaignReading> {
+fn load(text: &str, a: &str, b: &str) -> Result<RawCampaign> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in [("campaign.toml", text), ("a.csv", a), ("b.csv", b)] {
         std::fs::write(folder.path().join(name), text).unwrap();
@@ -108,7 +109,7 @@ fn channels_are_taken_in_si_units_with_their_sign() {
     let (a, b) = (recording(200, |_, _| {}), recording(200, still));
     let reading = load(&small(), &a, &b).unwrap();
     assert_eq!(reading.findings, []);
-    let run = &reading.raw.runs[0];
+    let run = &reading.runs[0];
     let wind = &run.in_wind;
     assert_eq!((wind.sample_count(), wind.sampling_hz), (200, 100.0));
     assert!(wind.motion[1..].iter().all(Vec::is_empty));
@@ -174,7 +175,7 @@ still_air = { file = "ntnu.h5", group = "still_air" }
         .unwrap()
         .load()
         .unwrap();
-    let run = &reading.raw.runs[0];
+    let run = &reading.runs[0];
     assert_eq!((run.mean_speed_m_s, run.air_density_kg_m3), (8.0, 1.195));
     assert_eq!(run.in_wind.sampling_hz, 200.0);
     let channel = |j: usize, i: usize| {
@@ -191,7 +192,7 @@ still_air = { file = "ntnu.h5", group = "still_air" }
     let [cell, _] = &run.in_wind.cells[..] else {
         panic!("two cells")
     };
-    let axes = reading.raw.rig.cells[0].axes_at(0.1);
+    let axes = reading.rig.cells[0].axes_at(0.1);
     let force = axes * nalgebra::Vector3::new(cell[0][9], cell[1][9], cell[2][9]);
     let moment = axes * nalgebra::Vector3::new(cell[3][9], cell[4][9], cell[5][9]);
     assert_eq!(
@@ -207,7 +208,7 @@ still_air = { file = "ntnu.h5", group = "still_air" }
         .unwrap()
         .load()
         .unwrap();
-    let density = reading.raw.runs[0].air_density_kg_m3;
+    let density = reading.runs[0].air_density_kg_m3;
     assert!(
         (density - 101_325.0 / (287.058 * 294.65)).abs() < 1e-12,
         "{density}"
@@ -389,7 +390,7 @@ fn channels_of_unequal_length_and_uneven_time_are_refused() {
         "[channels]\ntime = { name = \"t\", unit = \"s\" }",
     );
     let even = load(&map, &timed(&a, 1000), &timed(&b, 1000)).unwrap();
-    assert!((even.raw.runs[0].in_wind.sampling_hz - 100.0).abs() < 1e-9);
+    assert!((even.runs[0].in_wind.sampling_hz - 100.0).abs() < 1e-9);
     let said = complaint(&map, &timed(&a, 57), &timed(&b, 1000));
     assert!(said.contains("run `one`, in wind, `t`, sample 58: expected 0.010000 s after the sample before, as most, found 3.000000 s"), "{said}");
 }

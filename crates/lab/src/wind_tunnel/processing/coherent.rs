@@ -91,10 +91,9 @@ impl Regressors {
         for k in 0..self.count {
             self.row(k, &mut entries);
             for (i, a) in &entries {
-                let part = if *i < smooth {
-                    &mut parts.drift
-                } else {
-                    &mut parts.coherent
+                let part = match *i < smooth {
+                    true => &mut parts.drift,
+                    false => &mut parts.coherent,
                 };
                 part[k] += a * solution[*i];
             }

@@ -69,16 +69,13 @@ fn surest(all: &[InertialCoupling]) -> Option<&InertialCoupling> {
 
 /// Inertia of the runs of `dof` in the force of `other`.
 fn couplings(rig: &Rig, runs: &[PreparedRun<'_>], dof: Dof, other: Dof) -> Vec<InertialCoupling> {
-    let told = |p: &&PreparedRun<'_>| {
-        p.report
-            .still_air
-            .as_ref()
-            .is_some_and(|s| !s.hides_weight())
+    let told = |p: &PreparedRun<'_>, moves: Dof| {
+        let still_air = p.report.still_air.as_ref();
+        p.report.dof == moves && still_air.is_some_and(|s| !s.hides_weight())
     };
-    let body = runs.iter().filter(told).find(|p| p.report.dof == other);
+    let body = runs.iter().find(|p| told(p, other));
     let body = body.and_then(|p| p.report.still_air.as_ref());
-    let of_dof = runs.iter().enumerate();
-    let of_dof = of_dof.filter(|(_, p)| p.report.dof == dof && told(p));
+    let of_dof = runs.iter().enumerate().filter(|(_, p)| told(p, dof));
     // a force that nobody measures is zero
     let measured = |r: &&Ratios| r.total[index(other)].iter().any(|r| r.value.norm() > 0.0);
     let (at, ratios): (Vec<usize>, Vec<&Ratios>) = of_dof
@@ -167,11 +164,8 @@ impl InertialCoupling {
         runs: &mut [PreparedRun<'_>],
         rotation: Option<&Self>,
     ) -> Option<(usize, String)> {
-        let body = runs[self.run]
-            .report
-            .still_air
-            .as_mut()
-            .filter(|b| b.is_certain())?;
+        let body = runs[self.run].report.still_air.as_mut();
+        let body = body.filter(|b| b.is_certain())?;
         let (axis, sign, place) = match body.dof {
             Dof::Vertical => (0, -1.0, "downwind of"),
             _ => (1, 1.0, "above"),

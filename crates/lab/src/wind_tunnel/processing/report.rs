@@ -46,7 +46,7 @@ pub struct SignalToNoise {
 }
 
 /// Factors of the dimensionless form.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct DimensionlessFactors {
     /// Mean wind speed V, m/s.
     pub speed_m_s: f64,
@@ -59,7 +59,7 @@ pub struct DimensionlessFactors {
 }
 
 /// Everything that was done to one run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunReport {
     /// Name of the run.
     pub run: String,
@@ -173,30 +173,13 @@ impl RunReport {
             dof,
             sampling_hz,
             samples: run.in_wind.sample_count(),
-            cut: [0; 2],
-            clipped: Vec::new(),
-            segments: Vec::new(),
-            still_air: None,
-            lag_corrected_s: 0.0,
-            alignment: None,
-            cells: Vec::new(),
-            means: RemovedMeans::default(),
-            inertia: RemovedInertia::default(),
-            replaced: Vec::new(),
-            cell_drift: Vec::new(),
-            drift: RemovedDrift::default(),
-            low_pass: None,
-            cross_talk: CrossTalk::default(),
-            signal_to_noise: SignalToNoise::default(),
             dimensionless: DimensionlessFactors {
                 speed_m_s: speed,
                 air_density_kg_m3: density,
                 pressure_pa: 0.5 * density * speed.powi(2),
                 delta_s: speed / (rig.model_width_m * sampling_hz),
             },
-            levels: Vec::new(),
-            warnings: Vec::new(),
-            doubts: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -80,7 +80,7 @@ fn a_file_is_streamed_in_blocks_of_bounded_size() {
     for _ in 0..2 {
         let mut sizes = Vec::new();
         file.for_each_block(&mut |block| {
-            sizes.push(block.force[1].len());
+            sizes.push(block[3].len());
             Ok(())
         })
         .unwrap();

@@ -112,6 +112,7 @@ impl VirtualCampaignPlan {
                 rig: self.rig(header.map_or(0.0, |h| h.width_m)),
                 forces: None,
                 runs,
+                findings: Vec::new(),
             },
             records,
             points,

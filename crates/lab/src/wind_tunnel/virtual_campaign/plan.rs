@@ -281,10 +281,8 @@ impl Support {
         Rig {
             model_length_m: self.model_length_m,
             model_width_m: width_m,
-            model_mass_kg: None,
-            model_inertia_kg_m2: None,
-            centre_of_mass_m: None,
             cells: self.cells.clone(),
+            ..Rig::default()
         }
     }
 

@@ -4,7 +4,7 @@ use crate::aerodynamics::derivatives::notation::{Argument, Notation};
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
 use crate::files::derivatives::{
-    ReadOptions, StatedConvention, embedded, read_table, read_table_with, template_bytes,
+    ReadOptions, StatedConvention, embedded, read_table_with, template_bytes,
 };
 use rust_xlsxwriter::{Format, Workbook, Worksheet};
 use std::io::{Read, Write};
@@ -232,7 +232,8 @@ fn a_template_states_its_convention() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("table.xlsx");
     std::fs::write(&path, template_bytes(&convention.or_usual()).unwrap()).unwrap();
-    let message = read_table(&path).unwrap_err().to_string();
+    let read = read_table_with(&path, &ReadOptions::default());
+    let message = read.unwrap_err().to_string();
     // understood, but empty
     assert!(
         message.contains("sheet Derivatives") || message.contains("derivative"),
@@ -259,6 +260,23 @@ fn other_formats_are_read() {
         let first = Argument::VStar.at_v_hat(table.points(Derivative::H1)[0].v_hat);
         assert!((first - 4.0).abs() < 1e-14, "{ending}: {first}");
     }
+}
+
+/// The reader of the old format panics on the first part of a file.
+#[test]
+fn half_a_workbook_is_refused() {
+    let whole = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../tests/data/wide_table.xls"
+    );
+    let whole = std::fs::read(whole).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("half.xls");
+    std::fs::write(&path, &whole[..4834]).unwrap();
+    let refused = in_scanlan(&path).unwrap_err().to_string();
+    let expected =
+        "half.xls: expected a workbook (.xlsx, .xls, .ods), found a part that cannot be read";
+    assert!(refused.ends_with(expected), "{refused}");
 }
 
 /// A comma among points is one of thousands.

@@ -30,14 +30,11 @@ fn neither_rig_nor_still_air_nor_other_channels_are_needed() {
     let a = recording(200, |_, _| {});
     let reading = load(&computed(), &a, "").unwrap();
     assert_eq!(reading.findings, []);
-    assert_eq!(reading.raw.forces, Some(vec![Dof::Vertical, Dof::Torsion]));
-    let run = &reading.raw.runs[0];
+    assert_eq!(reading.forces, Some(vec![Dof::Vertical, Dof::Torsion]));
+    let run = &reading.runs[0];
     assert!(run.still_air.is_none());
     assert_eq!(
-        (
-            reading.raw.rig.model_length_m,
-            reading.raw.rig.model_width_m
-        ),
+        (reading.rig.model_length_m, reading.rig.model_width_m),
         (1.0, 0.5)
     );
     for i in 0..200 {
