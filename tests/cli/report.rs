@@ -379,8 +379,10 @@ fn a_study_that_was_changed_since_the_run_has_no_report() {
     let page = fs::read_to_string(at.join("d/report.html")).unwrap();
     assert!(page.contains("Strait crossing"));
     let softer = "section.torsion.frequency_hz=4.4";
-    let run = format!("study d/study.toml --no-figures --out o --set {softer}");
-    succeeds(at, &run.split(' ').collect::<Vec<_>>());
+    let run = |line: &str| succeeds(at, &line.split(' ').collect::<Vec<_>>());
+    run(&format!(
+        "study d/study.toml --no-figures --out o --set {softer}"
+    ));
     let wider = study.replace("width_m = 0.5", "width_m = 5.0");
     assert_ne!(wider, study);
     fs::write(at.join("d/study.toml"), wider).unwrap();
@@ -401,19 +403,8 @@ fn a_study_that_was_changed_since_the_run_has_no_report() {
     let said = "The FMU beside this page is another one";
     assert!(page().contains(said) && !page().contains("<td>deck_section.fmu"));
     // and of its own model, but forces alone
-    let to = "d/deck_section.fmu";
-    let forces = [
-        "fmu",
-        "export",
-        "d/model.json",
-        "--kind",
-        "force",
-        "--force",
-        "--out",
-        to,
-    ];
-    succeeds(at, &forces);
-    succeeds(at, &["report", "d"]);
+    run("fmu export d/model.json --kind force --force --out d/deck_section.fmu");
+    run("report d");
     assert!(page().contains(said) && !page().contains("<td>deck_section.fmu"));
     fs::write(own, kept).unwrap();
     succeeds(at, &["report", "d"]);
