@@ -413,11 +413,8 @@ fn a_study_that_was_changed_since_the_run_has_no_report() {
     fs::write(at.join("d/model.json"), model + " ").unwrap();
     refused(at, &["report", "d"], &["model.json", says[2]]);
     // the curves of another section beside the answer
-    succeeds(at, &["demo", "--out", "e", "--no-figures"]);
+    run("demo --out e --no-figures");
     let softer = "section.torsion.frequency_hz=4.5";
-    succeeds(
-        at,
-        &["flutter", "e/study.toml", "--no-figures", "--set", softer],
-    );
+    run(&format!("flutter e/study.toml --no-figures --set {softer}"));
     refused(at, &["report", "e"], &["curves.csv", says[2]]);
 }
