@@ -6,7 +6,7 @@ use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, counted, ensure, non_negative, positive};
 use crate::flutter::aliased_below;
 use crate::plausibility::{of_trained, sentences};
-use crate::report::{PlottedSeries, TimePanel, time_history_figure};
+use crate::report::{PlottedSeries, TimePanel, shown_in, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
 use crate::state_space::damping_ratio;
@@ -287,7 +287,7 @@ fn csv(model: &TrainedModel, speed: f64, columns: &[String], rows: &[Vec<f64>]) 
 pub(super) fn motion_panels(dofs: &[Dof], runs: &[(&str, &[Vec<f64>])]) -> Vec<TimePanel> {
     let panel = |(i, dof): (usize, &Dof)| {
         let (scale, unit) = match dof {
-            Dof::Torsion => dof.shown_in(),
+            Dof::Torsion => shown_in(*dof),
             Dof::Vertical | Dof::Lateral => (1e3, "mm"),
         };
         let series = runs.iter().map(|(label, rows)| {
