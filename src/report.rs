@@ -53,5 +53,5 @@ pub(crate) use summary_figure::summary_figure;
 pub use thesis_figures::{first_order_figures, laguerre_figures};
 pub(crate) use transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
 pub(crate) use wind_figures::{
-    buffeting_rms_figure, buffeting_spectra_figure, envelope_figure, equilibrium_figure,
+    buffeting_rms_figure, buffeting_spectra_figure, envelope_figure, equilibrium_figure, shown_in,
 };

@@ -9,7 +9,7 @@ use super::wind::WindArgs;
 use super::{figures, headline};
 use crate::buffeting::peak_factor;
 use crate::files::report_block::ReportBlock;
-use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, shown_in};
 use crate::study::{BuffetingStudy, SectionBuffetingBlock, buffeting_study};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -65,7 +65,7 @@ pub(super) fn of_study(
         return Err(Error::Numerical(format!("at no wind speed: {reason}")));
     };
     let rms = results.dofs.iter().zip(&last.rms).map(|(dof, rms)| {
-        let (factor, unit) = dof.shown_in();
+        let (factor, unit) = shown_in(*dof);
         format!("{} {:.4} {unit}", dof.symbol(), factor * rms)
     });
     let rms: Vec<String> = rms.collect();
@@ -112,13 +112,13 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
     let dofs = &results.dofs;
     let rms = dofs
         .iter()
-        .map(|d| format!(" | >RMS {} {}", d.symbol(), d.shown_in().1));
+        .map(|d| format!(" | >RMS {} {}", d.symbol(), shown_in(*d).1));
     let crossing = dofs.iter().map(|d| format!(" | >ν {} Hz", d.symbol()));
     let heads: String = rms.chain(crossing).collect();
     let mut table = TextTable::new(&format!(">V m/s{heads}"));
     for response in results.shown() {
         let rms = dofs.iter().zip(&response.rms);
-        let rms = rms.map(|(dof, rms)| format!("{:.5}", dof.shown_in().0 * rms));
+        let rms = rms.map(|(dof, rms)| format!("{:.5}", shown_in(*dof).0 * rms));
         let crossing = response.crossing_frequency_hz.iter();
         let speed = std::iter::once(format!("{:.2}", response.speed_m_s));
         table.row(speed.chain(rms).chain(crossing.map(|f| format!("{f:.4}"))));
@@ -153,7 +153,7 @@ fn page(
         let mut equilibria = results.mean.iter();
         let mean = equilibria.find(|m| m.speed_m_s == r.speed_m_s);
         for (i, dof) in results.dofs.iter().enumerate() {
-            let (factor, unit) = dof.shown_in();
+            let (factor, unit) = shown_in(*dof);
             let g = peak_factor(r.crossing_frequency_hz[i], DURATION_S);
             let mean = mean.map(|m| format!("{:.5}", factor * m.displacement[i]));
             let about = mean.as_ref().map_or(String::new(), |m| format!("{m} "));
@@ -230,7 +230,7 @@ fn time_domain(results: &BuffetingStudy) -> String {
             e.warm_up_s
         );
         for c in &domain.comparison {
-            let (factor, unit) = c.dof.shown_in();
+            let (factor, unit) = shown_in(c.dof);
             let _ = writeln!(
                 text,
                 "  {} RMS {:.5} ± {:.5} {}, frequency domain {:.5}: {:+.1} standard errors",

@@ -10,7 +10,7 @@ use super::{figures, headline, text};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
 use crate::files::gusts::write_gusts;
-use crate::report::{derivatives_figure, equilibrium_figure, vf_vg_figure};
+use crate::report::{derivatives_figure, equilibrium_figure, shown_in, vf_vg_figure};
 use crate::study::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
 use std::fmt::Write as _;
 
@@ -120,14 +120,14 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
 /// A line per wind speed, as many as a terminal shows.
 fn equilibria(results: &QuasiSteadyStudy) -> String {
     let dofs = &results.dofs;
-    let motion = |d: &Dof| format!(">{} {} | ", d.symbol(), d.shown_in().1);
+    let motion = |d: &Dof| format!(">{} {} | ", d.symbol(), shown_in(*d).1);
     let motions: String = dofs.iter().map(motion).collect();
     let mut table = TextTable::new(&format!(">V m/s | {motions}>stiffness left"));
     let points = &results.equilibria.points;
     let every = points.len().div_ceil(TABLE_LINES).max(1);
     for point in points.iter().step_by(every) {
         let motion = dofs.iter().zip(&point.displacement);
-        let motion = motion.map(|(dof, value)| format!("{:.5}", dof.shown_in().0 * value));
+        let motion = motion.map(|(dof, value)| format!("{:.5}", shown_in(*dof).0 * value));
         let left = format!("{:.1} %", 100.0 * point.stiffness_left);
         let speed = std::iter::once(format!("{:.2}", point.speed_m_s));
         table.row(speed.chain(motion).chain([left]));
@@ -151,7 +151,7 @@ fn run_in_words(run: &SimulatedMotion) -> String {
         [mean, square.sqrt()]
     };
     for (i, dof) in run.dofs.iter().enumerate() {
-        let (factor, unit) = dof.shown_in();
+        let (factor, unit) = shown_in(*dof);
         let shown = |rows| spread(rows, i).map(|x| factor * x);
         let ([mean, rms], [of_linear, linear]) = (shown(&run.nonlinear), shown(&run.linear));
         let _ = writeln!(
@@ -210,7 +210,7 @@ fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
     };
     let mut panels = Vec::with_capacity(run.dofs.len() + 1);
     for (i, dof) in run.dofs.iter().enumerate() {
-        let (factor, unit) = dof.shown_in();
+        let (factor, unit) = shown_in(*dof);
         let of = |rows: &[Vec<f64>]| rows.iter().map(|r| factor * r[i]).collect::<Vec<_>>();
         let both = [
             series("nonlinear", &mut of(&run.nonlinear).into_iter()),

@@ -9,6 +9,7 @@ use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{non_negative, positive};
 use crate::flutter::aliased_below;
 use crate::plausibility::of_trained;
+use crate::report::shown_in;
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::state_space::damping_ratio;
 use crate::trained_model::Experiment;
@@ -288,7 +289,7 @@ fn csv(model: &TrainedModel, speed: f64, columns: &[String], rows: &[Vec<f64>]) 
 pub(super) fn motion_panels(dofs: &[Dof], runs: &[(&str, &[Vec<f64>])]) -> Vec<TimePanel> {
     let panel = |(i, dof): (usize, &Dof)| {
         let (scale, unit) = match dof {
-            Dof::Torsion => dof.shown_in(),
+            Dof::Torsion => shown_in(*dof),
             Dof::Vertical | Dof::Lateral => (1e3, "mm"),
         };
         let series = runs.iter().map(|(label, rows)| {

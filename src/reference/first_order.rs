@@ -6,7 +6,7 @@
 //! dimensionless motion and force are `u` and `y` themselves.
 
 use crate::aerodynamics::Transfer;
-use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
+use crate::aerodynamics::laguerre::{alpha_lower_bound, discrete_memory, impulse_response};
 use crate::error::{Error, Result};
 use crate::identification::{DiscreteFit, StaticTerm, fit_discrete};
 use crate::section::Dof;
@@ -253,6 +253,24 @@ fn relative_error(found: &[f64], exact: &[f64]) -> f64 {
     (difference / size).sqrt()
 }
 
+/// Upper bound of `α`: the largest for which the responses of `count` filters have died out after `memory` samples
+/// (2.37 with `|g_l[k]| ≤ 0.01` for all `k ≥ M`, since the filters oscillate).
+///
+/// 0 when even the fastest filters remember more than that.
+pub(super) fn alpha_upper_bound(count: usize, memory: usize) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0 - 1e-6);
+    // the memory is counted in whole samples: beyond this the bound does not move
+    while high - low > 1e-9 {
+        let middle = 0.5 * (low + high);
+        if discrete_memory(middle, count) <= memory {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -329,5 +347,14 @@ mod tests {
             // straight lines between samples: (ωΔt)²/12
             assert!((y - exact).abs() < 2e-4, "{k}: {y} {exact}");
         }
+    }
+
+    /// As [`discrete_memory`] counts.
+    #[test]
+    fn the_largest_decay_factor_is_forgotten_in_time() {
+        let upper = alpha_upper_bound(4, 176);
+        assert!((upper - 0.889).abs() < 1e-3, "{upper}");
+        assert_eq!(discrete_memory(upper, 4), 176);
+        assert_eq!(alpha_upper_bound(3, 0), 0.0);
     }
 }

@@ -1,10 +1,11 @@
 //! Models trained on records and tables, and tables read between their points.
 
+use super::first_order::alpha_upper_bound;
 use super::flat_plate::{WIDE, WITHOUT_ROTARY, by_determinant, by_eigenvalues};
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };
-use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
+use crate::aerodynamics::laguerre::{alpha_lower_bound, impulse_response};
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};

@@ -11,9 +11,17 @@ use crate::study::bridge::BridgeBuffeting;
 /// Components of the turbulence in words.
 const GUSTS: [&str; 2] = ["u", "w"];
 
+/// Factor and unit in which people read a motion: degrees, or m.
+pub(crate) fn shown_in(dof: Dof) -> (f64, &'static str) {
+    match dof {
+        Dof::Torsion => (1f64.to_degrees(), "deg"),
+        Dof::Vertical | Dof::Lateral => (1.0, "m"),
+    }
+}
+
 /// Name, symbol and unit of an ordinate, and the factor to that unit from m and rad.
 fn ordinate(dof: Dof, before: &str) -> (String, f64) {
-    let (factor, unit) = dof.shown_in();
+    let (factor, unit) = shown_in(dof);
     let label = format!("{before}{} {} ({unit})", dof.name(), dof.symbol());
     (label, factor)
 }

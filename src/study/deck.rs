@@ -7,7 +7,7 @@ use crate::aerodynamics::derivatives::{
 use crate::aerodynamics::{FlatPlate, Transfer, TransferMatrix};
 use crate::error::{Result, ensure};
 use crate::files::derivatives::{
-    ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
+    ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with, state_angle,
 };
 use crate::flutter::{AssumedAtRest, FlutterSearch, OnsetInterval, determinant_onset, static_part};
 use crate::identification::sample_model;
@@ -89,7 +89,7 @@ impl Deck {
             let (mut table, of_file) = read_table_with(study.directory.join(name), &options)?;
             convention = of_file;
             let angle_deg = study.deck.angle_deg;
-            table.header.state_angle("deck.angle_deg", angle_deg)?;
+            state_angle(&mut table.header, "deck.angle_deg", angle_deg)?;
             Some(table)
         } else {
             let deck = embedded::deck_where_files_are_taken(name);

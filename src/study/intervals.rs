@@ -54,6 +54,7 @@ pub(crate) fn saved_moved_onset(
     let Some(alone) = held.unconstrained.filter(|_| *section != model.section) else {
         return Ok(held.onset);
     };
+    alone.validate().map_err(|e| e.in_file(path))?;
     let alone = CoupledSection::with_model(&section.structure()?, &*alone).ok();
     let moved = MovedOnset::new(alone.as_ref(), with, search, model.tested_range);
     Ok(Some(moved))

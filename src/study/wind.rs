@@ -1,5 +1,6 @@
 //! The wind file: section, aerodynamics and turbulence for quasi-steady theory and buffeting.
 
+mod arms;
 mod buffeting;
 mod quasi_steady;
 
@@ -290,7 +291,7 @@ impl CoefficientsBlock {
             (None, Some(source)) => {
                 let table = named_table(source, directory)?;
                 let model = InterpolatedTable::new(&table, dofs, Extrapolation::Refuse)?;
-                Arms::from_model(&model, model.tested_range().min)?
+                arms::arms_of(&model, model.tested_range().min)?
             }
             (None, None) => Arms::default(),
         };

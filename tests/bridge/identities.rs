@@ -325,8 +325,8 @@ fn the_interval_is_that_of_the_section() {
 #[test]
 fn a_bridge_of_one_mode() {
     for deck in ["LN21-5200", "LN21-6100"] {
-        let all = langenuen(deck, TWO).by_model;
-        let one = all.with_modes(|m| all.modes[m].number == 23).unwrap();
+        let mut one = langenuen(deck, TWO).by_model;
+        one.modes.retain(|mode| mode.number == 23);
         let section = coupled(&one);
         let found = find_onset("one mode", &section, &SEARCH, None).unwrap();
         let growing = |v: f64| {

@@ -107,7 +107,7 @@ fn compare(sections: usize, speeds: usize) -> (usize, usize) {
     let (mut bands, mut wrong) = (0, 0);
     for i in 0..sections {
         let section = section(&mut noise);
-        let found = growth_scan(&section, 0.0, SPEED_MAX, None).unwrap();
+        let found = growth_scan(&section, SPEED_MAX, None).unwrap();
         let against = contradictions(&section, &found, speeds, &mut noise);
         if against > 0 {
             println!("section {i}: {against} of {speeds} speeds contradict {found:?}");
@@ -156,7 +156,7 @@ fn bands_of_measured_decks() {
         };
         let Fitted { model, .. } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
         let coupled = CoupledSection::with_model(&section.structure().unwrap(), &model).unwrap();
-        let bands = growth_scan(&coupled, 0.0, 90.0, None).unwrap();
+        let bands = growth_scan(&coupled, 90.0, None).unwrap();
         let [slow, flutter] = &bands[..] else {
             panic!("{deck}: {bands:?}")
         };

@@ -50,7 +50,7 @@ fn followed_modes_and_all_eigenvalues_agree_over_the_matrix() {
             };
             let found = find_onset("", &section, &search, Some(report.tested_range)).unwrap();
             let critical = found.critical_speed_m_s().unwrap_or(speed_max);
-            let bands = growth_scan(&section, 0.0, speed_max, Some(report.tested_range)).unwrap();
+            let bands = growth_scan(&section, speed_max, Some(report.tested_range)).unwrap();
             for (speed, grows) in brute(&section, speed_max) {
                 let inside = bands
                     .iter()
@@ -108,7 +108,7 @@ fn bands_below_the_first_speed_are_met() {
     let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::with_model(&structure, &model).unwrap();
-    let bands = growth_scan(&section, 0.0, 30.0, Some(report.tested_range)).unwrap();
+    let bands = growth_scan(&section, 30.0, Some(report.tested_range)).unwrap();
     assert!(!bands.is_empty());
     let coarse = OnsetSearch {
         speed_max_m_s: 60.0,

@@ -23,7 +23,7 @@ pub use modal::ModalForces;
 
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, counted, ensure, finite, non_negative, positive};
-use crate::section::{Dof, SectionModel};
+use crate::section::SectionModel;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -182,20 +182,6 @@ impl Bridge {
         self.groups[0].width_m
     }
 
-    /// The same bridge with only the modes for which `keep` is true of their place.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when none is left.
-    pub fn with_modes(&self, keep: impl Fn(usize) -> bool) -> Result<Self> {
-        let kept = (0..self.modes.len()).filter(|i| keep(*i));
-        let modes: Vec<BridgeMode> = kept.map(|i| self.modes[i].clone()).collect();
-        ensure(!modes.is_empty(), "modes", "at least one mode", "none")?;
-        Ok(Self {
-            modes,
-            ..self.clone()
-        })
-    }
-
     /// Names of the coordinates: `mode 23`, then those of dampers.
     pub fn mode_names(&self) -> Vec<String> {
         let modes = self.modes.iter().map(|m| format!("mode {}", m.number));
@@ -259,12 +245,6 @@ impl Bridge {
         });
         let moving = (0..3).filter(|i| parts[*i] > 0.0);
         moving.max_by(|a, b| parts[*a].total_cmp(&parts[*b]))
-    }
-
-    /// Its name; `none` where there is none.
-    pub fn main_motion_name(&self, mode: &BridgeMode) -> &'static str {
-        self.main_motion(mode)
-            .map_or("none", |i| Dof::THREE[i].name())
     }
 }
 

@@ -164,22 +164,6 @@ impl Error {
     }
 }
 
-/// All values, or all errors in their order: what is computed in parallel must not report whichever failed first.
-pub fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
-    let (mut values, mut errors) = (Vec::with_capacity(results.len()), Vec::new());
-    for result in results {
-        match result {
-            Ok(value) => values.push(value),
-            Err(error) => errors.push(error),
-        }
-    }
-    match errors.len() {
-        0 => Ok(values),
-        1 => Err(errors.remove(0)),
-        _ => Err(Error::Several(errors)),
-    }
-}
-
 /// Whether a text has control characters, which a terminal obeys and XML cannot hold; broken lines and tabs are texts.
 pub fn has_control_characters(text: &str) -> bool {
     text.contains(|c: char| c.is_control() && !['\n', '\r', '\t'].contains(&c))

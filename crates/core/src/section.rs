@@ -76,13 +76,6 @@ impl Dof {
     pub fn names(dofs: &[Dof]) -> String {
         dofs.iter().map(|d| d.name()).collect::<Vec<_>>().join(", ")
     }
-    /// Factor and unit in which people read a motion: degrees, or m.
-    pub fn shown_in(self) -> (f64, &'static str) {
-        match self {
-            Dof::Torsion => (1f64.to_degrees(), "deg"),
-            Dof::Vertical | Dof::Lateral => (1.0, "m"),
-        }
-    }
     /// Name of the force in words.
     pub fn force_name(self) -> &'static str {
         self.words()[2]

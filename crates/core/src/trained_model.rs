@@ -94,7 +94,11 @@ impl Model {
         }
     }
 
-    fn validate(&self) -> Result<()> {
+    /// Checks shapes and values, and that it has not more states than can be computed with.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with what is wrong.
+    pub fn validate(&self) -> Result<()> {
         let states = self.states_at_most();
         ensure(
             states <= MAX_STATES,

@@ -1,6 +1,7 @@
 //! `aerodeck bridge show`: modes, similarities, what is stated.
 
 use super::files::BridgeArgs;
+use super::summary::main_motion;
 use crate::bridge::BridgeMode;
 use crate::cli::figures;
 use crate::cli::vocabulary::{Answer, Progress, Result, TextTable, counted};
@@ -35,7 +36,7 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
             format!("{:.4}", m.frequency_hz),
             format!("{:.6e}", m.generalised_mass),
             format!("{:.3}", 100.0 * m.damping_ratio),
-            bridge.main_motion_name(m).to_owned(),
+            main_motion(bridge, m).to_owned(),
         ]);
     }
     text.push_str(&table.text());

@@ -1,11 +1,13 @@
 //! `summary.json` of a bridge, and copies of the files that it was computed from.
 
 use super::text::beside_the_onset;
+use crate::bridge::{Bridge, BridgeMode};
 use crate::cli::report::folder::{digest, today};
 use crate::cli::vocabulary::{BridgeStudy, Error, Finding, OutputDir, Result, Verdict};
 use crate::files::bridge::{BridgeFile, ModesFormat};
 use crate::files::derivatives::{file_and_sheet, is_table_file};
 use crate::flutter::Onset;
+use crate::section::Dof;
 use crate::study::bridge::BridgeFlutter;
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
@@ -140,9 +142,15 @@ fn modes(study: &BridgeStudy) -> Vec<ModeFacts> {
         frequency_hz: m.frequency_hz,
         generalised_mass: m.generalised_mass,
         damping_ratio: m.damping_ratio,
-        main_motion: bridge.main_motion_name(m).to_owned(),
+        main_motion: main_motion(bridge, m).to_owned(),
     })
     .collect()
+}
+
+/// Name of the motion that most of a mode is; `none` where there is none.
+pub(super) fn main_motion(bridge: &Bridge, mode: &BridgeMode) -> &'static str {
+    let main = bridge.main_motion(mode);
+    main.map_or("none", |i| Dof::THREE[i].name())
 }
 
 /// Leaves the bridge file `at` and what it reads in the folder of results; a file outside the folder of the bridge file is named

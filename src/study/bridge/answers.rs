@@ -331,10 +331,12 @@ fn fewer_modes(
         let kept = shares.iter().filter(|m| m.energy_share >= below_share);
         let mut modes: Vec<usize> = kept.map(|m| m.mode).collect();
         modes.sort_unstable();
-        if modes.len() == bridge.modes.len() || all.last().is_some_and(|l| l.modes == modes) {
+        let all_or_none = [0, bridge.modes.len()].contains(&modes.len());
+        if all_or_none || all.last().is_some_and(|l| l.modes == modes) {
             continue;
         }
-        let part = bridge.with_modes(|i| modes.contains(&bridge.modes[i].number))?;
+        let mut part = bridge.clone();
+        part.modes.retain(|m| modes.contains(&m.number));
         // the whole bridge was searched: the modes that are left are followed alone
         let (part, tested) = (coupled(&part)?, study.tested_range());
         let onset_m_s = find_onset_of_modes("fewer modes", &part, search, tested)?;

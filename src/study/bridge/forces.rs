@@ -6,7 +6,7 @@ use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::error::{Error, Result, ensure};
 use crate::files::bridge::{BridgeSectionBlock, StaticBlock};
-use crate::files::derivatives::named_table_in;
+use crate::files::derivatives::{named_table_in, state_angle};
 use crate::identification::{FeedThrough, Form, FrequencyFit};
 use crate::plausibility::{Finding, of_model, of_table};
 use crate::section::Dof;
@@ -261,7 +261,7 @@ fn checked_table(
 ) -> Result<DerivativeTable> {
     let mut table = block_table(block, name, directory)?;
     let key = format!("section {}: angle_deg", block.name);
-    table.header.state_angle(&key, block.angle_deg)?;
+    state_angle(&mut table.header, &key, block.angle_deg)?;
     let odd = of_table(&table, &block.convention.or_usual()).into_iter();
     findings.extend(odd.map(|f| of_block(block, f)));
     Ok(table)

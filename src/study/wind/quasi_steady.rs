@@ -56,7 +56,7 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
     let range = study.speed_range()?;
     let speeds = range.curve_speeds_m_s();
     let equilibria = static_equilibria(&structure, &theory, &speeds)?;
-    let name = format!("quasi-steady, {}", table.name());
+    let name = format!("quasi-steady, {}", table.name);
     let points = equilibria.points.iter();
     let linear = points.map(|p| theory.linearised(p.rotation_rad));
     let linear = linear.collect::<Result<_>>()?;
@@ -71,7 +71,7 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
     known.searched_to_m_s = Some(range.searched_to_m_s);
     Ok(QuasiSteadyStudy {
         verdict: Verdict::judge(&known),
-        coefficients: table.name().to_owned(),
+        coefficients: table.name.clone(),
         dofs: structure.dofs.clone(),
         curves: quasi_steady_modes(&name, &structure, &theory, &equilibria)?,
         onset,

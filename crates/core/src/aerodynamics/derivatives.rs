@@ -38,7 +38,6 @@ pub use interpolated::{Extrapolation, InterpolatedTable};
 pub use interpolation::Interpolation;
 pub use missing::Missing;
 pub use table::{DerivativePoint, DerivativeTable, TableHeader};
-pub use table::{SIGN_CONVENTION, UNITS};
 
 use crate::section::Dof;
 

@@ -90,7 +90,7 @@ impl GustForce {
         dofs: &[Dof],
         admittance: RationalAdmittance,
     ) -> Result<Self> {
-        let of_table = format!("the static coefficients `{}`", table.name());
+        let of_table = format!("the static coefficients `{}`", table.name);
         let theory = QuasiSteady::new(table, Arms::default(), dofs)?.linearised(0.0)?;
         let rows = theory.buffeting.row_iter();
         Ok(Self {

@@ -10,4 +10,4 @@ pub use bank::FilterBank;
 pub use continuous::{FilterTerm, LaguerreModel};
 pub use discrete::{DiscreteLaguerre, DiscreteTerm};
 pub use discrete::{Recursion, discrete_filter_matrices, impulse_response};
-pub use guidelines::{alpha_lower_bound, alpha_upper_bound, discrete_memory};
+pub use guidelines::{alpha_lower_bound, discrete_memory};

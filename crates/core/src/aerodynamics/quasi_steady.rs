@@ -10,7 +10,6 @@ mod linear;
 
 pub use arms::Arms;
 pub use coefficients::{CoefficientRow, CoefficientsAt, CoefficientsHeader, StaticCoefficients};
-pub use coefficients::{TABLE_SIGN_CONVENTION, TABLE_UNITS};
 pub use linear::LinearQuasiSteady;
 
 use crate::error::{Result, ensure};
@@ -111,52 +110,5 @@ impl QuasiSteady {
             rotation_rad,
             at,
         ))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::aerodynamics::RationalModel;
-    use crate::units::ReducedFrequency;
-    use std::f64::consts::PI;
-
-    #[test]
-    fn arms_of_a_linear_theory_are_found_again() {
-        let arms = Arms {
-            lateral: 0.2,
-            vertical: -0.25,
-            torsion: -0.31,
-        };
-        let at = CoefficientsAt {
-            drag: 0.07,
-            lift: -0.1,
-            moment: 0.02,
-            drag_slope: 0.3,
-            lift_slope: 4.4,
-            moment_slope: 1.1,
-        };
-        let model = LinearQuasiSteady::new(&Dof::THREE, arms, 0.0, at);
-        let found = Arms::from_model(&model, ReducedFrequency::from_full_width(0.3)).unwrap();
-        for dof in Dof::THREE {
-            assert!((found.arm(dof) - arms.arm(dof)).abs() < 1e-14);
-        }
-    }
-
-    /// Jones's plate at low K, by hand from its coefficients: `Im G_yθ/Im G_yy` and `Im G_θθ/Im G_θy`.
-    #[test]
-    fn arms_from_derivatives() {
-        let k = ReducedFrequency::from_full_width(0.4);
-        let arms = Arms::from_model(&RationalModel::jones_flat_plate(), k).unwrap();
-        let lag = |d: f64| 0.4 * d / (0.16 + d * d);
-        let (l1, l2) = (lag(0.091), lag(0.6));
-        let h1 = -PI * 0.4 - 0.094342 * l1 - 1.262920 * l2;
-        let h2 = 0.75 * PI * 0.4 - 1.013140 * l1 - 1.789137 * l2;
-        let a1 = -0.25 * PI * 0.4 - 0.023586 * l1 - 0.315730 * l2;
-        let a2 = -PI / 16.0 * 0.4 - 0.253285 * l1 - 0.447284 * l2;
-        // the coefficients have six decimals
-        assert!((arms.vertical - h2 / h1).abs() < 1e-5);
-        assert!((arms.torsion - a2 / a1).abs() < 1e-5);
-        assert_eq!(arms.lateral, 0.0);
     }
 }

@@ -23,7 +23,7 @@ impl Scan<'_> {
         let crossings = found.crossings.iter().map(|o| &o.at);
         let trusted = crossings.filter(|at| spanned(at.reduced_frequency));
         let to_m_s = trusted.map(|at| at.speed_m_s).fold(to_m_s, f64::min);
-        for band in self.bands(0.0, to_m_s, coarse, f64::INFINITY)? {
+        for band in self.bands(to_m_s, coarse, f64::INFINITY)? {
             let at = self.at(band.from_m_s)?;
             if let Some(lambda) = at.fastest.filter(|_| !found.knows(band.from_m_s)) {
                 if band.from_start {

@@ -243,12 +243,10 @@ impl OnsetInterval {
 impl Onset {
     /// The speed, unless the data do not determine it: what may be printed as a result, m/s.
     pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
-        match &self.interval {
-            OnsetInterval::Undetermined { reason, .. } => Err(reason),
-            OnsetInterval::Known(_) | OnsetInterval::Spread { .. } | OnsetInterval::None { .. } => {
-                Ok(self.at.speed_m_s)
-            }
+        if let OnsetInterval::Undetermined { reason, .. } = &self.interval {
+            return Err(reason);
         }
+        Ok(self.at.speed_m_s)
     }
 
     /// The answer in one line: speed, interval, and whether the data reach it, such as

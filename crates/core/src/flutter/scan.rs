@@ -9,7 +9,7 @@ use super::present_modes::PresentModes;
 use super::still_air::lowest_speed;
 use super::tracking::{Tracker, mode_shape};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, ensure, non_negative, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::state_space::{boundary, golden_section};
 use crate::threads;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -33,11 +33,11 @@ const ALONE: usize = 40;
 /// Steps of the golden section between three speeds of the grid: a peak to 1e-5 of their distance.
 const PEAK_STEPS: usize = 24;
 
-/// Bands of wind speed between two speeds in which an oscillation grows, in rising order.
+/// Bands of wind speed from nearly still air up to a speed in which an oscillation grows, in rising order.
 ///
 /// Sections find all speeds at which growth may begin or end at once (`critical`), so that no growth
 /// between two speeds is a statement about every one between; what is sampled or large looks at every eigenvalue at speeds a
-/// twentieth apart or closer, and at peaks between them; of a bridge it is counted that none but the modes comes near growth. Zero for `from_m_s` is nearly still air. `tested` as in [`find_onset`](super::find_onset).
+/// twentieth apart or closer, and at peaks between them; of a bridge it is counted that none but the modes comes near growth. `tested` as in [`find_onset`](super::find_onset).
 ///
 /// ```
 /// # extern crate aerodeck_core as aerodeck;
@@ -48,21 +48,20 @@ const PEAK_STEPS: usize = 24;
 ///
 /// let structure = SectionModel::iabse_1_1a().structure()?;
 /// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
-/// assert!(growth_scan(&section, 0.0, 60.0, None)?.is_empty());
-/// let bands = growth_scan(&section, 0.0, 100.0, None)?;
+/// assert!(growth_scan(&section, 60.0, None)?.is_empty());
+/// let bands = growth_scan(&section, 100.0, None)?;
 /// assert!(!bands[0].from_start && bands[0].to_m_s == 100.0);
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Input`] for speeds that are no interval; [`Error::Numerical`] when eigenvalues cannot be computed.
+/// [`Error::Input`] for a speed that is none; [`Error::Numerical`] when eigenvalues cannot be computed.
 pub fn growth_scan(
     section: &CoupledSection,
-    from_m_s: f64,
     to_m_s: f64,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<Vec<GrowthBand>> {
-    Scan::new("", section, tested).bands(from_m_s, to_m_s, false, f64::INFINITY)
+    Scan::new("", section, tested).bands(to_m_s, false, f64::INFINITY)
 }
 
 /// The fastest growing oscillations at one speed.
@@ -134,14 +133,11 @@ impl<'a> Scan<'a> {
     }
 
     /// Speeds of a scan, m/s.
-    fn speeds(&self, from_m_s: f64, to_m_s: f64, coarse: bool) -> Result<Vec<f64>> {
-        non_negative("lowest wind speed", from_m_s)?;
+    fn speeds(&self, to_m_s: f64, coarse: bool) -> Result<Vec<f64>> {
         positive("highest wind speed", to_m_s)?;
-        let expected = format_args!("a number above the lowest, {from_m_s} m/s");
-        ensure(from_m_s < to_m_s, "highest wind speed", expected, to_m_s)?;
         let (ratio, part) = if coarse { COARSE } else { FINE };
         let mut all = Vec::new();
-        let mut speed = from_m_s.max(self.lowest(to_m_s)?);
+        let mut speed = self.lowest(to_m_s)?;
         while speed < to_m_s {
             all.push(speed);
             speed = (ratio * speed).min(speed + to_m_s * part);
@@ -150,16 +146,15 @@ impl<'a> Scan<'a> {
         Ok(all)
     }
 
-    /// Every band of growth between two speeds that begins below a third; `coarse` where the structural modes are followed
+    /// Every band of growth up to a speed that begins below another; `coarse` where the structural modes are followed
     /// besides.
     pub(super) fn bands(
         &self,
-        from_m_s: f64,
         to_m_s: f64,
         coarse: bool,
         below_m_s: f64,
     ) -> Result<Vec<GrowthBand>> {
-        let grid = self.speeds(from_m_s, to_m_s, coarse)?;
+        let grid = self.speeds(to_m_s, coarse)?;
         let points = match critical_speeds(self.section) {
             Some(critical) => self.between(&critical, &grid)?,
             None => {

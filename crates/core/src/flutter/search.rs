@@ -16,6 +16,9 @@ use serde::{Deserialize, Serialize};
 /// States at most of which all eigenvalues are looked at, a hundred times or more: those of some 700 take a second each.
 const SCANNED_STATES: usize = 700;
 
+/// More wind speeds than any search needs.
+const MOST_SPEEDS: usize = 10_000;
+
 /// Where and how densely to look.
 ///
 /// ```
@@ -25,6 +28,7 @@ const SCANNED_STATES: usize = 700;
 /// let search = OnsetSearch { speed_max_m_s: 60.0, speeds: 3 };
 /// assert_eq!(search.speeds_m_s()?, [20.0, 40.0, 60.0]);
 /// assert!(OnsetSearch { speeds: 1, ..search }.speeds_m_s().is_err());
+/// assert!(OnsetSearch { speeds: usize::MAX, ..search }.speeds_m_s().is_err());
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -59,11 +63,13 @@ impl OnsetSearch {
     /// The wind speeds that are looked at, m/s: equally spaced, still air left out.
     ///
     /// # Errors
-    /// [`Error::Input`] for a highest speed that is not positive or fewer than two speeds.
+    /// [`Error::Input`] for a highest speed that is not positive, fewer than two speeds or more than ten thousand.
     pub fn speeds_m_s(&self) -> Result<Vec<f64>> {
         let highest = positive("flutter.speed_max_m_s", self.speed_max_m_s)?;
         let speeds = self.speeds;
-        ensure(speeds >= 2, "flutter.speeds", "at least 2", speeds)?;
+        let expected = format_args!("a number from 2 to {MOST_SPEEDS}");
+        let counted = (2..=MOST_SPEEDS).contains(&speeds);
+        ensure(counted, "flutter.speeds", expected, speeds)?;
         let speed = |i: usize| highest * i as f64 / self.speeds as f64;
         Ok((1..=self.speeds).map(speed).collect())
     }

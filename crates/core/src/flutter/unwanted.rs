@@ -17,7 +17,7 @@ const BEYOND: f64 = 1.02;
 const BELOW: f64 = 1e-6;
 
 /// What a scan from nearly still air to the onset found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct UnwantedGrowth {
     /// The scan goes up to the onset, or to the highest speed where there is none, m/s.
     pub scanned_to_m_s: f64,
@@ -76,7 +76,7 @@ pub fn unwanted_growth_below(
         Some(at) if at.speed_m_s > 0.0 => (at.speed_m_s, at.speed_m_s * (1.0 - BELOW)),
         _ => (highest, highest),
     };
-    let bands = Scan::new("", section, tested).bands(0.0, limit * BEYOND, false, below)?;
+    let bands = Scan::new("", section, tested).bands(limit * BEYOND, false, below)?;
     let (bands, own): (Vec<_>, Vec<_>) = bands.into_iter().partition(GrowthBand::extrapolated);
     Ok(UnwantedGrowth {
         scanned_to_m_s: limit,
@@ -87,16 +87,6 @@ pub fn unwanted_growth_below(
 }
 
 impl UnwantedGrowth {
-    /// No growth up to a speed (m/s), as a sweep of reduced frequencies sees it.
-    pub fn none_up_to(speed_m_s: f64) -> Self {
-        Self {
-            scanned_to_m_s: speed_m_s,
-            bands: Vec::new(),
-            proved: false,
-            instability_from_m_s: None,
-        }
-    }
-
     /// Whether there is none.
     pub fn is_none(&self) -> bool {
         self.bands.is_empty()

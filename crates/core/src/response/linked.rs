@@ -67,34 +67,29 @@ const FEW_ROWS: usize = 40;
 /// The equation of pressure and filters. Filters of a bridge hang together in short chains, one or a few for each mode, so
 /// that a product with their rows, taken by their links, costs modes × filters; on a section a row costs less than its links.
 #[derive(Debug, Clone)]
-pub(super) enum Linked {
-    Few(Packed),
-    /// Rows of which most entries count, and behind them those of the filters.
-    Many(Packed, Sparse),
+pub(super) struct Linked {
+    /// Rows of which most entries count; all where there are few.
+    full: Packed,
+    /// Those of the filters, behind them.
+    linked: Sparse,
 }
 
 impl Linked {
     /// A matrix whose first `full` rows are full.
     pub(super) fn new(matrix: &DMatrix<f64>, full: usize) -> Self {
-        let rest = matrix.nrows() - full;
-        if matrix.nrows() > FEW_ROWS {
-            let linked = Sparse::new(&matrix.rows(full, rest).into_owned());
-            Self::Many(Packed::new(&matrix.rows(0, full).into_owned()), linked)
-        } else {
-            Self::Few(Packed::new(matrix))
+        let rows = matrix.nrows();
+        let full = if rows > FEW_ROWS { full } else { rows };
+        Self {
+            full: Packed::new(&matrix.rows(0, full).into_owned()),
+            linked: Sparse::new(&matrix.rows(full, rows - full).into_owned()),
         }
     }
 
     #[inline(always)]
     pub(super) fn set<S: FourLanes>(&self, simd: S, v: &[f64], y: &mut [f64]) {
-        match self {
-            Self::Few(matrix) => matrix.set(simd, v, y, |x| x),
-            Self::Many(full, linked) => {
-                let (first, rest) = y.split_at_mut(full.rows);
-                full.set(simd, v, first, |x| x);
-                rest.fill(0.0);
-                linked.add(|j| v[j], rest);
-            }
-        }
+        let (first, rest) = y.split_at_mut(self.full.rows);
+        self.full.set(simd, v, first, |x| x);
+        rest.fill(0.0);
+        self.linked.add(|j| v[j], rest);
     }
 }

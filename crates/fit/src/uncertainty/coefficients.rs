@@ -156,6 +156,20 @@ impl CoefficientUncertainty {
         }
     }
 
+    /// Checks what was read from a file: that there are as many parameters and covariances as the coordinates say.
+    pub(super) fn validate(&self) -> Result<()> {
+        let n = self.dofs.len();
+        ensure(n > 0, "dofs", "at least one", "none")?;
+        let parameters = self.coordinates.parameters(n)?;
+        let found = self.parameters.len();
+        ensure(found == parameters, "parameters", parameters, found)?;
+        let (rows, columns) = self.covariance.shape();
+        let expected = format_args!("{parameters}×{parameters} numbers");
+        let found = format_args!("{rows}×{columns}");
+        let square = [rows, columns] == [parameters; 2];
+        ensure(square, "covariance", expected, found)
+    }
+
     /// The estimates.
     pub fn values(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.value).collect()

@@ -165,6 +165,15 @@ impl FormEnsemble {
         }
     }
 
+    /// Checks what was read from a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a model or table that is none.
+    pub(super) fn validate(&self) -> Result<()> {
+        self.fits.iter().try_for_each(|f| f.model.validate())?;
+        self.read.iter().try_for_each(InterpolatedTable::validate)
+    }
+
     /// Onsets of a section by every form.
     ///
     /// # Errors

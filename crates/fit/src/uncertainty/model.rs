@@ -171,9 +171,15 @@ impl ModelUncertainty {
     }
 
     /// Reads what was saved.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for text that is not such a file, and for parameters that make no model.
     pub fn from_json(text: &str) -> Result<Self> {
         let what = "the uncertainty of a model as written by `aerodeck train`";
-        json::read("uncertainty", text).map_err(|e| Error::json(what, &e))
+        let read: Self = json::read("uncertainty", text).map_err(|e| Error::json(what, &e))?;
+        read.coefficients.validate()?;
+        read.forms.iter().try_for_each(FormEnsemble::validate)?;
+        Ok(read)
     }
 
     /// Indented JSON.

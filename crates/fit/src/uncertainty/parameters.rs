@@ -1,10 +1,11 @@
 //! What the parameters of a fit with searched poles are: its coefficients, the poles that a search found inside its
 //! bounds, and the directions that active constraints leave to them.
 
-use crate::error::{Result, counted};
+use crate::error::{Error, Result, counted, ensure};
 use crate::identification::affine::AffineSpace;
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{NOTHING_HELD, SAME_DIRECTION};
+use crate::identification::form::number_of_filters;
 use crate::identification::{Coefficient, EntryReport, FitReport, Form, OwnFilters, PoleSearch};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
@@ -107,6 +108,47 @@ pub enum Coordinates {
         /// Number of filters.
         filters: usize,
     },
+}
+
+impl Coordinates {
+    /// Number of parameters that a model of `n` motions has in them.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::error::Error::Input) for coordinates that make no such model.
+    pub(super) fn parameters(&self, n: usize) -> Result<usize> {
+        let (form, chains, searched) = match self {
+            Self::Discrete { filters, .. } => {
+                number_of_filters("coordinates.filters", *filters)?;
+                return Ok(n * (1 + n * filters));
+            }
+            Self::Continuous {
+                form,
+                chains,
+                searched,
+            } => (form, chains, searched),
+        };
+        let square = chains.len() == n && chains.iter().all(|row| row.len() == n);
+        let expected = format_args!("poles of {n}×{n} transfer functions");
+        ensure(square, "coordinates.chains", expected, "of others")?;
+        let all = chains.concat();
+        let alike = !form.has_lags() || all.iter().all(|c| c.len() == all[0].len());
+        let expected = "as many lags for every transfer function";
+        ensure(alike, "coordinates.chains", expected, "others")?;
+        let lacks = |pole: &&SearchedPole| {
+            let mut own = all.iter().enumerate();
+            own.any(|(e, c)| pole.is_of(e / n, e % n) && pole.index >= form.collapse(c).len())
+        };
+        if let Some(SearchedPole { index, .. }) = searched.iter().find(lacks) {
+            let expected = "the place of a pole that its transfer functions have";
+            return Err(Error::input(
+                "coordinates.searched",
+                expected,
+                index.to_string(),
+            ));
+        }
+        let count = form.feed_through().count() * all.len();
+        Ok(count + all.iter().map(Vec::len).sum::<usize>() + searched.len())
+    }
 }
 
 /// How the assumption of a covariance says that searched poles are in it.

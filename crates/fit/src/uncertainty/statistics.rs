@@ -78,7 +78,7 @@ pub fn sample_quantile(sorted: &[f64], count: usize, probability: f64) -> Option
 
 /// A factor `S` of a covariance, `C = S Sᵀ`, and its least and greatest eigenvalue; `None` without eigenvalues.
 pub(super) fn covariance_root(covariance: DMatrix<f64>) -> Option<(DMatrix<f64>, [f64; 2])> {
-    if !covariance.iter().all(|x| x.is_finite()) {
+    if covariance.is_empty() || !covariance.iter().all(|x| x.is_finite()) {
         return None;
     }
     let eigen = SymmetricEigen::try_new(covariance, f64::EPSILON, 10_000)?;

@@ -233,3 +233,64 @@ fn saved_uncertainty_gives_the_same_interval() {
             .contains("line 1")
     );
 }
+
+/// What a file says of its parameters must make a model: else it is refused by name, whatever it says.
+#[test]
+fn uncertainties_that_make_no_model_are_refused() {
+    let samples = scattered(3);
+    let (_, estimate) = fitted(&samples, &two_poles(PoleSearch::default()));
+    let tested = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k)).unwrap();
+    let forms = FormEnsemble::new(&samples, &Dof::TWO, &|_| None).unwrap();
+    let whole = ModelUncertainty::of_data(estimate, Some(forms), tested).unwrap();
+    let whole = whole.to_json().unwrap();
+    assert!(ModelUncertainty::from_json(&whole).is_ok());
+    let refused = |place: &str, value: serde_json::Value| {
+        let mut file: serde_json::Value = serde_json::from_str(&whole).unwrap();
+        *file.pointer_mut(place).expect(place) = value;
+        let read = ModelUncertainty::from_json(&file.to_string());
+        read.err().expect(place).to_string()
+    };
+    let own = |key: &str| format!("/coefficients/{key}");
+    for (place, value, expected) in [
+        (own("dofs"), "[]", "dofs: expected at least one, found none"),
+        (own("parameters"), "[]", "parameters: expected 22, found 0"),
+        (
+            own("covariance"),
+            "[]",
+            "covariance: expected 22×22 numbers, found 0×0",
+        ),
+        (
+            own("coordinates/chains/1"),
+            "[]",
+            "coordinates.chains: expected poles of 2×2 transfer functions",
+        ),
+        (
+            own("coordinates/searched/1/index"),
+            "9",
+            "coordinates.searched: expected the place of a pole",
+        ),
+        (
+            own("coordinates/chains/0/1"),
+            "[0.1, 0.2, 0.3]",
+            "parameters: expected 23, found 22",
+        ),
+        (
+            own("coordinates"),
+            r#"{ "kind": "discrete", "alpha": 0.5, "delta_s": 0.1, "filters": 18446744073709551615 }"#,
+            "coordinates.filters: expected at most 100",
+        ),
+        (
+            "/forms/fits/0/model/e0".to_owned(),
+            "[]",
+            "finite 2x2 matrix",
+        ),
+        (
+            "/forms/read/0/entries/0/0/y".to_owned(),
+            "[]",
+            "2×2 pairs of curves",
+        ),
+    ] {
+        let message = refused(&place, serde_json::from_str(value).unwrap());
+        assert!(message.contains(expected), "{message}");
+    }
+}

@@ -14,7 +14,7 @@ mod xlsx_cells;
 pub(crate) use csv_file::{parse_csv, read_csv_with};
 pub use csv_file::{parse_csv_in, write_csv, write_csv_in, write_points};
 pub use csv_header::{ReadOptions, WIDTH_ASSUMED};
-pub use stated_convention::StatedConvention;
+pub use stated_convention::{StatedConvention, state_angle};
 pub use workbook::TABLE_3_2_FREQUENCIES_HZ;
 pub use workbook_writer::{template_bytes, workbook_bytes_in};
 

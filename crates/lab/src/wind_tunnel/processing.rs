@@ -40,7 +40,7 @@ pub use report::{
 pub use signals::{HarmonicSegment, SectionSignals, index};
 
 use super::{RawCampaign, Record};
-use crate::error::{Result, all_or_errors, ensure};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use prepare::PreparedRun;
 use rayon::prelude::*;
@@ -122,6 +122,22 @@ fn dofs_of(campaign: &RawCampaign, prepared: &[PreparedRun<'_>]) -> Vec<Dof> {
     };
     let measured = |d: &&Dof| campaign.forces.as_ref().is_none_or(|f| f.contains(d));
     all.iter().filter(measured).copied().collect()
+}
+
+/// All values, or all errors in their order: what is computed in parallel must not report whichever failed first.
+pub(super) fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
+    let (mut values, mut errors) = (Vec::with_capacity(results.len()), Vec::new());
+    for result in results {
+        match result {
+            Ok(value) => values.push(value),
+            Err(error) => errors.push(error),
+        }
+    }
+    match errors.len() {
+        0 => Ok(values),
+        1 => Err(errors.remove(0)),
+        _ => Err(Error::Several(errors)),
+    }
 }
 
 #[cfg(test)]

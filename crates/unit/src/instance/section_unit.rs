@@ -65,7 +65,10 @@ impl SectionUnit {
         let (model, limit) = (&resources.model, values[self.indices.limit]);
         let (section, coupled) = self.own.coupled(resources, values)?;
         match section::plainly_stable_to(model, &section, &coupled, limit) {
-            Some(speed) => Ok(UnwantedGrowth::none_up_to(speed)),
+            Some(scanned_to_m_s) => Ok(UnwantedGrowth {
+                scanned_to_m_s,
+                ..UnwantedGrowth::default()
+            }),
             None => section::growth_of(model, &coupled, limit),
         }
     }

@@ -19,7 +19,7 @@ impl WindStudy {
         let evidence = match (&setting.fixed, &setting.theory) {
             (Some(fixed), _) => setting.evidence(fixed.as_ref(), &search)?,
             (None, Some(theory)) => {
-                let name = format!("quasi-steady, {}", theory.coefficients().name());
+                let name = format!("quasi-steady, {}", theory.coefficients().name);
                 let onset = quasi_steady_onset(&name, &setting.structure, theory, &search)?;
                 evidence(self, &onset)
             }

@@ -3,7 +3,7 @@
 use super::interpolation::{Curve, Interpolation};
 use super::{Derivative, DerivativePoint, DerivativeTable, Part};
 use crate::aerodynamics::{Transfer, TransferMatrix};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix};
@@ -102,6 +102,18 @@ impl InterpolatedTable {
             tested_range: table.tested_range(dofs),
             entries: pairs.map(entry).collect(),
         })
+    }
+
+    /// Checks what was read from a file: a curve for every part of `G`, each with as many values and slopes as points.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for any other.
+    pub fn validate(&self) -> Result<()> {
+        let (n, curves) = (self.dofs.len(), &self.entries);
+        let whole = curves.iter().all(|(a, b)| a.is_whole() && b.is_whole());
+        let expected = format_args!("{n}×{n} pairs of curves, each with as many values as points");
+        let place = format_args!("table {}", self.name);
+        ensure(whole && curves.len() == n * n, place, expected, "others")
     }
 
     /// The range of `K` in which every derivative was tested; outside it the policy of extrapolation holds.

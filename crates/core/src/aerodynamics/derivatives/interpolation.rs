@@ -149,6 +149,12 @@ impl Curve {
         }
     }
 
+    /// Whether there are points, and as many values and slopes.
+    pub(super) fn is_whole(&self) -> bool {
+        let (points, slopes) = (self.x.len(), self.slopes.as_ref());
+        points > 0 && self.y.len() == points && slopes.is_none_or(|s| s.len() == points)
+    }
+
     /// The part of `G` at `k`; beyond the points the quantity keeps its value at the nearest one.
     pub(super) fn at(&self, k: ReducedFrequency) -> f64 {
         let full = k.full_width();

@@ -6,19 +6,13 @@ pub use points::{DerivativePoint, check_point_count, check_points};
 
 use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, ensure, positive, without_control_characters};
+use crate::error::{Error, Result, positive, without_control_characters};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
 use points::{check_complete, check_speeds_agree};
 use std::collections::BTreeMap;
 
-/// Sign convention and scaling of every table of this project, as written in the header of its files.
-pub const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x and drag downwind; q = G r with q = F/(rho V^2 B/2), M/(rho V^2 B^2/2), r = (y/B, x/B, theta); G_yy = K^2 (H4 + i H1), G_ytheta = K^2 (H3 + i H2), G_thetay = K^2 (A4 + i A1), G_thetatheta = K^2 (A3 + i A2)";
-
-/// Units of the columns, as written in the header of the files.
-pub const UNITS: &str = "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
-
-/// Where a table comes from. Units and sign convention are `UNITS` and `SIGN_CONVENTION` for all tables.
+/// Where a table comes from.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TableHeader {
     /// Where the figures come from.
@@ -37,34 +31,6 @@ pub struct TableHeader {
     pub notes: Vec<String>,
     /// What the measurements contradict of what was stated of them: nothing may rest on the table before it is cleared.
     pub doubts: Vec<String>,
-}
-
-impl TableHeader {
-    /// Takes the mean angle of the tests that stands under `key`, deg, where the table does not state it itself.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for an angle beyond a right angle, and for another than the table states.
-    pub fn state_angle(&mut self, key: &str, angle_deg: Option<f64>) -> Result<()> {
-        let Some(stated) = angle_deg else {
-            return Ok(());
-        };
-        ensure(
-            !stated.is_nan() && stated.abs() <= 90.0,
-            key,
-            "an angle between -90 and 90 degrees",
-            stated,
-        )?;
-        match self.angle_deg.filter(|own| *own != stated) {
-            Some(own) => {
-                let expected = format!("{own}, which the table states");
-                Err(Error::input(key, expected, stated.to_string()))
-            }
-            None => {
-                self.angle_deg = angle_deg;
-                Ok(())
-            }
-        }
-    }
 }
 
 /// Measured derivatives of one deck.

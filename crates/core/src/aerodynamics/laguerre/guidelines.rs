@@ -21,24 +21,6 @@ pub fn alpha_lower_bound(f_max_hz: f64, sampling_hz: f64) -> f64 {
     (2.0 - c - (c * c - 4.0 * c + 3.0).sqrt()).powi(2)
 }
 
-/// Upper bound of `α`: the largest for which the responses of `count` filters have died out after `memory` samples
-/// (2.37 with `|g_l[k]| ≤ 0.01` for all `k ≥ M`, since the filters oscillate).
-///
-/// 0 when even the fastest filters remember more than that.
-pub fn alpha_upper_bound(count: usize, memory: usize) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0 - 1e-6);
-    // the memory is counted in whole samples: beyond this the bound does not move
-    while high - low > 1e-9 {
-        let middle = 0.5 * (low + high);
-        if discrete_memory(middle, count) <= memory {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
-}
-
 /// Memory `M` of `count` discrete filters, samples: from there on `|g_l[k]| ≤ 0.01` for every one of them.
 pub fn discrete_memory(alpha: f64, count: usize) -> usize {
     let (a, b) = discrete_filter_matrices(alpha, count);
@@ -90,9 +72,6 @@ mod tests {
         let g = impulse_response(0.889, 4, 400);
         assert!((g[(3, 176)].abs() - 0.0096).abs() < 5e-5, "{}", g[(3, 176)]);
         assert!((176..400).all(|k| g[(3, k)].abs() <= 0.01));
-        let upper = alpha_upper_bound(4, 176);
-        assert!((upper - 0.889).abs() < 1e-3, "{upper}");
-        assert_eq!(discrete_memory(upper, 4), 176);
     }
 
     /// The definition, looked up in a long response.
@@ -106,7 +85,6 @@ mod tests {
                 .unwrap();
             assert_eq!(discrete_memory(alpha, count), last + 1);
         }
-        assert_eq!(alpha_upper_bound(3, 0), 0.0);
     }
 
     /// One filter is `√(2p) e^(−ps)`; and slow discrete filters are sampled continuous ones, `√α = e^(−pΔs)`.

@@ -1,13 +1,8 @@
 //! Reference points of the corrected quasi-steady theory.
 
-use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, ensure, finite};
+use crate::error::{Result, ensure, finite};
 use crate::section::Dof;
-use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
-
-/// An entry of `G` below this part of the largest in its row gives no arm: it is noise.
-const SMALLEST_DIVISOR: f64 = 1e-6;
 
 /// No reference point is farther from a deck than this, in widths.
 const LARGEST: f64 = 100.0;
@@ -47,41 +42,5 @@ impl Arms {
             )?;
         }
         Ok(())
-    }
-
-    /// Arms from a model with derivatives, `B₁x = B P₂*/P₅*`, `B₁y = B H₂*/H₁*`, `B₁θ = B A₂*/A₁*` (1.18), at a reduced
-    /// frequency low enough for quasi-steady flow; each is a ratio of imaginary parts of `G`. A model without the
-    /// lateral degree of freedom gives a lateral arm of zero.
-    pub fn from_model(model: &dyn Transfer, k: ReducedFrequency) -> Result<Self> {
-        let g = model.transfer(k)?;
-        let place = |dof: Dof| model.dofs().iter().position(|d| *d == dof);
-        let (Some(y), Some(theta)) = (place(Dof::Vertical), place(Dof::Torsion)) else {
-            return Err(Error::input(
-                "arms of quasi-steady theory",
-                "a model with the vertical and the torsional degree of freedom",
-                Dof::names(model.dofs()),
-            ));
-        };
-        let arm = |dof: Dof| -> Result<f64> {
-            let Some(row) = place(dof) else {
-                return Ok(0.0);
-            };
-            let (by_heave, by_rotation) = (g[(row, y)].im, g[(row, theta)].im);
-            let largest = g.row(row).iter().map(|z| z.norm()).fold(0.0, f64::max);
-            if by_heave.abs() <= SMALLEST_DIVISOR * largest {
-                return Err(Error::Numerical(format!(
-                    "arms of quasi-steady theory: the force of the {} degree of freedom does not depend on the vertical \
-                     velocity at K = {}",
-                    dof.name(),
-                    k.full_width()
-                )));
-            }
-            Ok(by_rotation / by_heave)
-        };
-        Ok(Self {
-            lateral: arm(Dof::Lateral)?,
-            vertical: arm(Dof::Vertical)?,
-            torsion: arm(Dof::Torsion)?,
-        })
     }
 }

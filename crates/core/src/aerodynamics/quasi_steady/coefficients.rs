@@ -4,12 +4,6 @@ use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
 use crate::error::{Error, Place, Result, ensure};
 use crate::section::Dof;
 
-/// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
-pub const TABLE_SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
-
-/// Units of the columns, as written in the header of the files.
-pub const TABLE_UNITS: &str = "angle_deg in degrees; c_d, c_l, c_m dimensionless";
-
 /// Tables of more than this range are no deck tests.
 const ANGLE_LIMIT_DEG: f64 = 180.0;
 
@@ -71,8 +65,10 @@ impl CoefficientsAt {
 /// Static coefficients `C_D`, `C_L`, `C_M` over the angle of attack: cubic splines with continuous curvature.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticCoefficients {
-    name: String,
-    header: CoefficientsHeader,
+    /// Name of the deck.
+    pub name: String,
+    /// Where the figures come from.
+    pub header: CoefficientsHeader,
     rows: Vec<CoefficientRow>,
     drag: Spline,
     lift: Spline,
@@ -99,16 +95,6 @@ impl StaticCoefficients {
             moment: spline(|r| r.moment),
             rows,
         })
-    }
-
-    /// Name of the deck.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Where the figures come from.
-    pub fn header(&self) -> &CoefficientsHeader {
-        &self.header
     }
 
     /// The tested angles.

@@ -294,6 +294,12 @@ mod tests {
         from_file(path, &std::fs::read_to_string(path).unwrap(), &names())
     }
 
+    /// There is nothing to draw from.
+    #[test]
+    fn nothing_has_no_factor() {
+        assert!(factor_of(&DMatrix::zeros(0, 0)).is_err());
+    }
+
     #[test]
     fn the_factor_gives_the_covariance_back() {
         let folder = write("c.csv", "# made up\nc, a\n4.0, 1.0\n1.0, 9.0\n");

@@ -5,8 +5,8 @@
 //! # name: flat plate
 //! # source: …
 //! # licence: …
-//! # units: …              as in `TABLE_UNITS`
-//! # sign_convention: …    as in `TABLE_SIGN_CONVENTION`
+//! # units: …              as in `UNITS`
+//! # sign_convention: …    as in `SIGN_CONVENTION`
 //! # generator: …
 //! angle_deg,c_d,c_l,c_m
 //! -10,0.01,-1.09662271123215,-0.27415567780803773
@@ -15,15 +15,19 @@
 //! Angles rise from row to row. Numbers are written with as many digits as it takes to read the same double back.
 
 use crate::aerodynamics::quasi_steady::coefficients::check_rows;
-use crate::aerodynamics::quasi_steady::{
-    CoefficientRow, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION, TABLE_UNITS,
-};
+use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsHeader, StaticCoefficients};
 use crate::error::{Place, Result};
 use crate::files::header_csv::{CommentHeader, number_rows};
 use std::io::Write;
 
 /// First line of the file.
 const FORMAT: &str = "aerodeck static coefficients 1";
+
+/// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
+const SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
+
+/// Units of the columns, as written in the header of the files.
+const UNITS: &str = "angle_deg in degrees; c_d, c_l, c_m dimensionless";
 
 /// Names of the columns, which may stand in any order.
 const COEFFICIENT_COLUMNS: [&str; 4] = ["angle_deg", "c_d", "c_l", "c_m"];
@@ -60,8 +64,8 @@ pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
     check_rows(&rows, |i| {
         Place::line(lines.get(i).copied().unwrap_or(no_row))
     })?;
-    header.must_say("sign_convention", TABLE_SIGN_CONVENTION)?;
-    header.must_say("units", TABLE_UNITS)?;
+    header.must_say("sign_convention", SIGN_CONVENTION)?;
+    header.must_say("units", UNITS)?;
     let provenance = CoefficientsHeader {
         source: header.text("source"),
         licence: header.text("licence"),
@@ -72,13 +76,13 @@ pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
 
 /// Writes a table; `parse_coefficients` gives the same table back, bit for bit.
 pub fn write_coefficients(table: &StaticCoefficients, out: &mut dyn Write) -> std::io::Result<()> {
-    let header = table.header();
+    let header = &table.header;
     let entries = [
-        ("name", table.name()),
+        ("name", table.name.as_str()),
         ("source", &header.source),
         ("licence", &header.licence),
-        ("units", TABLE_UNITS),
-        ("sign_convention", TABLE_SIGN_CONVENTION),
+        ("units", UNITS),
+        ("sign_convention", SIGN_CONVENTION),
         ("generator", &header.generator),
     ];
     CommentHeader::write(out, FORMAT, &entries)?;

@@ -1,11 +1,18 @@
 //! Head of a file of derivatives: where the table comes from, and in which convention it is written.
 
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
-use crate::aerodynamics::derivatives::{Missing, SIGN_CONVENTION, TableHeader, UNITS};
+use crate::aerodynamics::derivatives::{Missing, TableHeader};
 use crate::error::{Error, Result};
 use crate::files::derivatives::StatedConvention;
 use crate::files::header_csv::{CommentHeader, HeaderLine};
 use std::io::Write;
+
+/// Sign convention and scaling of every table of this project, as written in the header of its files.
+pub(super) const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x and drag downwind; q = G r with q = F/(rho V^2 B/2), M/(rho V^2 B^2/2), r = (y/B, x/B, theta); G_yy = K^2 (H4 + i H1), G_ytheta = K^2 (H3 + i H2), G_thetay = K^2 (A4 + i A1), G_thetatheta = K^2 (A3 + i A2)";
+
+/// Units of the columns, as written in the header of the files.
+pub(super) const UNITS: &str =
+    "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
 
 /// What a file of derivatives does not say of itself.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,7 +1,8 @@
-//! What somebody has said about notation, argument and axes of a table.
+//! What somebody has said about notation, argument and axes of a table, and about the angle of its tests.
 
+use crate::aerodynamics::derivatives::TableHeader;
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, ensure};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -97,5 +98,31 @@ fn agree<T: PartialEq + fmt::Display>(
             format!("`{file}` stated in the file"),
         )),
         (user, file) => Ok(user.or(file)),
+    }
+}
+
+/// Takes the mean angle of the tests that stands under `key`, deg, where the table does not state it itself.
+///
+/// # Errors
+/// [`Error::Input`] for an angle beyond a right angle, and for another than the table states.
+pub fn state_angle(header: &mut TableHeader, key: &str, angle_deg: Option<f64>) -> Result<()> {
+    let Some(stated) = angle_deg else {
+        return Ok(());
+    };
+    ensure(
+        !stated.is_nan() && stated.abs() <= 90.0,
+        key,
+        "an angle between -90 and 90 degrees",
+        stated,
+    )?;
+    match header.angle_deg.filter(|own| *own != stated) {
+        Some(own) => {
+            let expected = format!("{own}, which the table states");
+            Err(Error::input(key, expected, stated.to_string()))
+        }
+        None => {
+            header.angle_deg = angle_deg;
+            Ok(())
+        }
     }
 }

@@ -5,8 +5,9 @@ use super::channel_map::{ChannelMap, SAME_RATE};
 use super::file::{Campaign, RunBlock};
 use super::findings::{RunFinding, file_hints, run_findings};
 use super::section_forces::SectionForces;
-use crate::error::{Error, Result, all_or_errors, ensure, positive};
+use crate::error::{Error, Result, ensure, positive};
 use crate::signal::mean;
+use crate::wind_tunnel::processing::all_or_errors;
 use crate::wind_tunnel::{RawCampaign, RawRun, Rig};
 use aerodeck_core::threads;
 

@@ -2,6 +2,7 @@
 
 use crate::files::derivatives::csv_file::*;
 use crate::files::derivatives::embedded;
+use crate::files::derivatives::{csv_header, state_angle};
 
 fn written(table: &DerivativeTable) -> String {
     let mut out = Vec::new();
@@ -32,11 +33,9 @@ fn angle_and_amplitude_of_the_tests_are_kept() {
     let said = parse_csv(&wrong).unwrap_err().to_string();
     let expected = "(angle_deg): expected an angle between -90 and 90 degrees, found `300`";
     assert!(said.ends_with(expected), "{said}");
-    table
-        .header
-        .state_angle("deck.angle_deg", Some(-3.0))
-        .unwrap();
-    let other = table.header.state_angle("deck.angle_deg", Some(0.0));
+    let mut state = |angle| state_angle(&mut table.header, "deck.angle_deg", Some(angle));
+    state(-3.0).unwrap();
+    let other = state(0.0);
     let said = other.unwrap_err().to_string();
     let expected = "deck.angle_deg: expected -3, which the table states, found 0";
     assert_eq!(said, expected);
@@ -134,8 +133,8 @@ fn first_format() -> String {
     format!(
         "# aerodeck derivative table 1\n# name: LN21-5200\n# source: NTNU\n# licence: MIT\n# units: {}\n\
          # sign_convention: {}\n# generator: x\n# width_m: 0.5023\n# model_length_m: 2.68\nderivative,point{rows}",
-        crate::aerodynamics::derivatives::UNITS,
-        crate::aerodynamics::derivatives::SIGN_CONVENTION,
+        csv_header::UNITS,
+        csv_header::SIGN_CONVENTION,
     )
 }
 
