@@ -129,7 +129,12 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
         results.aerodynamics,
         table.text()
     );
-    text.extend(results.without_response().into_iter().map(|line| format!("{line}\n")));
+    text.extend(
+        results
+            .without_response()
+            .into_iter()
+            .map(|line| format!("{line}\n")),
+    );
     text.push_str(&tested(results));
     text.push_str(&time_domain(results));
     text

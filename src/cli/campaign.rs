@@ -94,7 +94,12 @@ fn text(reading: &CampaignReading) -> String {
         0 => text.push_str("nothing odd found\n"),
         n => {
             let _ = writeln!(text, "{}:", counted(n, "finding"));
-            text.extend(reading.findings.iter().map(|finding| format!("  {finding}\n")));
+            text.extend(
+                reading
+                    .findings
+                    .iter()
+                    .map(|finding| format!("  {finding}\n")),
+            );
         }
     }
     text

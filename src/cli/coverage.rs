@@ -130,7 +130,11 @@ fn text(r: &CoverageReport) -> String {
     if r.without_onset > 0 {
         let _ = writeln!(text, "repetitions without an onset: {}", r.without_onset);
     }
-    text.extend(r.warnings.iter().map(|warning| format!("warning: {warning}\n")));
+    text.extend(
+        r.warnings
+            .iter()
+            .map(|warning| format!("warning: {warning}\n")),
+    );
     text
 }
 

@@ -202,7 +202,11 @@ fn refuse_own_input(args: &TableArgs, result: &Path) -> Result<()> {
 fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Vec<String> {
     let found = sentences(&of_table(table, from));
     let warnings = [table.header.notes.clone(), found].concat();
-    text.extend(warnings.iter().map(|warning| format!("  warning: {warning}\n")));
+    text.extend(
+        warnings
+            .iter()
+            .map(|warning| format!("  warning: {warning}\n")),
+    );
     warnings
 }
 

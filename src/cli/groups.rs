@@ -78,7 +78,11 @@ pub(super) fn page(cli: &Command, exit_codes: &[(u8, &str)]) -> String {
         let _ = writeln!(text, "| `{short}--{long}` | {} |", help.unwrap_or_default());
     }
     text.push_str("\n## Exit codes\n\n| code | meaning |\n|---|---|\n");
-    text.extend(exit_codes.iter().map(|(code, meaning)| format!("| {code} | {meaning} |\n")));
+    text.extend(
+        exit_codes
+            .iter()
+            .map(|(code, meaning)| format!("| {code} | {meaning} |\n")),
+    );
     text.push_str("| 128 + n | ended by signal n |\n");
     text
 }

@@ -93,7 +93,13 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
     let _ = write!(text, "\nStatic equilibrium\n{}", equilibria(results));
-    text.extend(results.equilibria.end.iter().map(|end| format!("{}\n", end.explain())));
+    text.extend(
+        results
+            .equilibria
+            .end
+            .iter()
+            .map(|end| format!("{}\n", end.explain())),
+    );
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {

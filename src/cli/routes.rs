@@ -21,7 +21,12 @@ pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
     }
     let mut text = columns.text();
     text.extend(table.sanity.iter().map(sanity));
-    text.extend(table.left_out.iter().map(|left_out| format!("left out: {left_out}\n")));
+    text.extend(
+        table
+            .left_out
+            .iter()
+            .map(|left_out| format!("left out: {left_out}\n")),
+    );
     text.push('\n');
     text.extend(cards(table).map(|route| card(route, table.sanity.as_ref(), speed_max_m_s)));
     text
@@ -115,7 +120,12 @@ fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> Stri
         Some(lines) => writeln!(text, "; Selberg {:.3} m/s", lines.selberg_m_s),
         None => writeln!(text),
     };
-    text.extend(route.warnings.iter().map(|warning| format!("  warning: {warning}\n")));
+    text.extend(
+        route
+            .warnings
+            .iter()
+            .map(|warning| format!("  warning: {warning}\n")),
+    );
     text
 }
 

@@ -51,7 +51,12 @@ pub(crate) fn chain(
             let _ = writeln!(text, "warning: {}: {warning}", summary.model);
         }
     }
-    text.extend(summary.buffeting.iter().map(|line| format!("Gusts     {line}\n")));
+    text.extend(
+        summary
+            .buffeting
+            .iter()
+            .map(|line| format!("Gusts     {line}\n")),
+    );
     text.push_str(&failures(&summary.failed));
     let others = rest.lines().filter(|l| l.starts_with("warning: "));
     let warnings = others.filter(|l| !text.contains(l)).count();
@@ -102,10 +107,20 @@ fn details(study: &Study, summary: &Summary) -> String {
         s.air_density_kg_m3
     );
     let _ = writeln!(text, "Speeds    {}\n", study.speeds().explain());
-    text.extend(summary.fits.iter().map(|of| fit(&of.model, &of.report, &of.uncertainty)));
+    text.extend(
+        summary
+            .fits
+            .iter()
+            .map(|of| fit(&of.model, &of.report, &of.uncertainty)),
+    );
     text.push('\n');
     text.push_str(&found(&summary.results));
-    text.extend(summary.stepped.iter().map(|stepped| format!("{}\n", stepped.explain())));
+    text.extend(
+        summary
+            .stepped
+            .iter()
+            .map(|stepped| format!("{}\n", stepped.explain())),
+    );
     text
 }
 
@@ -140,7 +155,12 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
         Ok(known) => text.extend(known.explain().map(|line| format!("          {line}\n"))),
         Err(reason) => text.push_str(&format!("          no interval of the onset: {reason}\n")),
     }
-    text.extend(report.notes.iter().map(|note| format!("          note: {note}\n")));
+    text.extend(
+        report
+            .notes
+            .iter()
+            .map(|note| format!("          note: {note}\n")),
+    );
     text
 }
 
@@ -199,7 +219,12 @@ pub(crate) fn onsets(results: &FlutterStudy) -> String {
         text.push_str(&without_interval(o));
         text.push_str(&warnings(&o.at.model, &o.warnings));
     }
-    text.extend(results.unstable.iter().map(|s| warnings(&s.at.model, &s.warnings)));
+    text.extend(
+        results
+            .unstable
+            .iter()
+            .map(|s| warnings(&s.at.model, &s.warnings)),
+    );
     text
 }
 

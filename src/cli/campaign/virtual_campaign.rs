@@ -78,7 +78,12 @@ pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Ans
             run.in_wind.sampling_hz
         );
     }
-    text.extend(plan.tunnel.findings().into_iter().map(|finding| format!("  note: {finding}\n")));
+    text.extend(
+        plan.tunnel
+            .findings()
+            .into_iter()
+            .map(|finding| format!("  note: {finding}\n")),
+    );
     let value = serde_json::json!({
         "section": made.raw.section,
         "runs": made.disturbances,
