@@ -129,12 +129,8 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
         results.aerodynamics,
         table.text()
     );
-    text.extend(
-        results
-            .without_response()
-            .into_iter()
-            .map(|line| format!("{line}\n")),
-    );
+    let lines = results.without_response().into_iter();
+    text.extend(lines.map(|line| format!("{line}\n")));
     text.push_str(&tested(results));
     text.push_str(&time_domain(results));
     text

@@ -94,12 +94,8 @@ fn text(reading: &CampaignReading) -> String {
         0 => text.push_str("nothing odd found\n"),
         n => {
             let _ = writeln!(text, "{}:", counted(n, "finding"));
-            text.extend(
-                reading
-                    .findings
-                    .iter()
-                    .map(|finding| format!("  {finding}\n")),
-            );
+            let findings = reading.findings.iter();
+            text.extend(findings.map(|finding| format!("  {finding}\n")));
         }
     }
     text

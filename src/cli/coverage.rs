@@ -130,11 +130,8 @@ fn text(r: &CoverageReport) -> String {
     if r.without_onset > 0 {
         let _ = writeln!(text, "repetitions without an onset: {}", r.without_onset);
     }
-    text.extend(
-        r.warnings
-            .iter()
-            .map(|warning| format!("warning: {warning}\n")),
-    );
+    let warnings = r.warnings.iter();
+    text.extend(warnings.map(|warning| format!("warning: {warning}\n")));
     text
 }
 

@@ -202,11 +202,8 @@ fn refuse_own_input(args: &TableArgs, result: &Path) -> Result<()> {
 fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Vec<String> {
     let found = sentences(&of_table(table, from));
     let warnings = [table.header.notes.clone(), found].concat();
-    text.extend(
-        warnings
-            .iter()
-            .map(|warning| format!("  warning: {warning}\n")),
-    );
+    let lines = warnings.iter();
+    text.extend(lines.map(|warning| format!("  warning: {warning}\n")));
     warnings
 }
 
@@ -285,9 +282,13 @@ fn notations(sketch: Option<&Path>) -> Result<Answer> {
         );
     }
     text.push_str("argument\n");
-    text.extend(Argument::ALL.map(|a| format!("  {a:<10} {}\n", a.definition())));
+    for argument in Argument::ALL {
+        let _ = writeln!(text, "  {argument:<10} {}", argument.definition());
+    }
     text.push_str("axes\n");
-    text.extend(Axes::ALL.map(|axes| format!("  {axes:<10} {}\n", axes.words())));
+    for axes in Axes::ALL {
+        let _ = writeln!(text, "  {axes:<10} {}", axes.words());
+    }
     let notations = Notation::NAMED.map(|n| {
         serde_json::json!({
             "notation": n,

@@ -78,11 +78,9 @@ pub(super) fn page(cli: &Command, exit_codes: &[(u8, &str)]) -> String {
         let _ = writeln!(text, "| `{short}--{long}` | {} |", help.unwrap_or_default());
     }
     text.push_str("\n## Exit codes\n\n| code | meaning |\n|---|---|\n");
-    text.extend(
-        exit_codes
-            .iter()
-            .map(|(code, meaning)| format!("| {code} | {meaning} |\n")),
-    );
+    for (code, meaning) in exit_codes {
+        let _ = writeln!(text, "| {code} | {meaning} |");
+    }
     text.push_str("| 128 + n | ended by signal n |\n");
     text
 }

@@ -93,13 +93,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
     let _ = write!(text, "\nStatic equilibrium\n{}", equilibria(results));
-    text.extend(
-        results
-            .equilibria
-            .end
-            .iter()
-            .map(|end| format!("{}\n", end.explain())),
-    );
+    let end = results.equilibria.end.iter();
+    text.extend(end.map(|end| format!("{}\n", end.explain())));
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {

@@ -21,14 +21,12 @@ pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
     }
     let mut text = columns.text();
     text.extend(table.sanity.iter().map(sanity));
-    text.extend(
-        table
-            .left_out
-            .iter()
-            .map(|left_out| format!("left out: {left_out}\n")),
-    );
+    let left_out = table.left_out.iter();
+    text.extend(left_out.map(|left_out| format!("left out: {left_out}\n")));
     text.push('\n');
-    text.extend(cards(table).map(|route| card(route, table.sanity.as_ref(), speed_max_m_s)));
+    for route in cards(table) {
+        text.push_str(&card(route, table.sanity.as_ref(), speed_max_m_s));
+    }
     text
 }
 
@@ -120,12 +118,8 @@ fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> Stri
         Some(lines) => writeln!(text, "; Selberg {:.3} m/s", lines.selberg_m_s),
         None => writeln!(text),
     };
-    text.extend(
-        route
-            .warnings
-            .iter()
-            .map(|warning| format!("  warning: {warning}\n")),
-    );
+    let warnings = route.warnings.iter();
+    text.extend(warnings.map(|warning| format!("  warning: {warning}\n")));
     text
 }
 

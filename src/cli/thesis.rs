@@ -40,11 +40,9 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
         ..
     } = stages;
     let mut text = format!("{}\n\n", study.name);
-    text.extend(
-        trained
-            .iter()
-            .map(|t| text::fit(&t.model.name, &t.report, &t.uncertainty)),
-    );
+    for t in &trained {
+        text.push_str(&text::fit(&t.model.name, &t.report, &t.uncertainty));
+    }
     text.push('\n');
     text.push_str(&text::onsets(&results));
     text.push_str(&text::deviations(&results));

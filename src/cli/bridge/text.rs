@@ -45,11 +45,8 @@ pub(super) fn text(
         let named = named.join(", ");
         let _ = writeln!(text, "Modes     of the flutter, by kinetic energy: {named}");
     }
-    text.extend(
-        beside_the_onset(results)
-            .into_iter()
-            .map(|sentence| format!("{sentence}\n")),
-    );
+    let sentences = beside_the_onset(results).into_iter();
+    text.extend(sentences.map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -81,11 +78,8 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
             "  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}"
         );
     }
-    text.extend(
-        beside_the_onset(results)
-            .into_iter()
-            .map(|sentence| format!("{sentence}\n")),
-    );
+    let sentences = beside_the_onset(results).into_iter();
+    text.extend(sentences.map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -163,11 +157,8 @@ fn one(answer: &BridgeAnswer) -> String {
             if let Some(slope) = o.damping_slope_s_m {
                 let _ = writeln!(text, "  damping slope dζ/dV {slope:.5} s/m");
             }
-            text.extend(
-                o.warnings
-                    .iter()
-                    .map(|warning| format!("  warning: {warning}\n")),
-            );
+            let warnings = o.warnings.iter();
+            text.extend(warnings.map(|warning| format!("  warning: {warning}\n")));
         }
         other => {
             let _ = writeln!(text, "  {}", other.explain());

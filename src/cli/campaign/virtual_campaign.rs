@@ -78,12 +78,8 @@ pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Ans
             run.in_wind.sampling_hz
         );
     }
-    text.extend(
-        plan.tunnel
-            .findings()
-            .into_iter()
-            .map(|finding| format!("  note: {finding}\n")),
-    );
+    let findings = plan.tunnel.findings().into_iter();
+    text.extend(findings.map(|finding| format!("  note: {finding}\n")));
     let value = serde_json::json!({
         "section": made.raw.section,
         "runs": made.disturbances,
