@@ -225,16 +225,14 @@ fn show(args: &TableArgs, each_point: bool) -> Result<Answer> {
             text.push_str(&ranges(&symbol, derivative, &expressed));
         }
     }
-    Answer::new(
-        text,
-        &serde_json::json!({
-            "source": table.header.source,
-            "licence": table.header.licence,
-            "in_file": from,
-            "warnings": warnings,
-            "table": expressed,
-        }),
-    )
+    let value = serde_json::json!({
+        "source": table.header.source,
+        "licence": table.header.licence,
+        "in_file": from,
+        "warnings": warnings,
+        "table": expressed,
+    });
+    Answer::new(text, &value)
 }
 
 fn head(table: &DerivativeTable, from: &Convention, shown: &Convention) -> String {

@@ -116,10 +116,8 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
         }
     }
     text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "selection": selection, "metrics": metrics, "files": written }),
-    )
+    let value = serde_json::json!({ "selection": selection, "metrics": metrics, "files": written });
+    Answer::new(text, &value)
 }
 
 /// The frequency that was asked for, which is among those that were tested.

@@ -33,15 +33,13 @@ pub(crate) fn transfer_figure(title: &str, plots: &[TransferPlot]) -> Result<Fig
     let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.model));
     let ink = |i: usize| Ink::nth(PLACE, i);
     let mut panels = Vec::with_capacity(2 * plots.len());
-    for plot in plots {
-        for phase in [false, true] {
-            let mut panel = reference_panel(plot, phase);
-            for curve in &plot.models {
-                let points = points(curve, phase);
-                panel.add(&curve.model, points, ink(index_of(&labels, &curve.model))?);
-            }
-            panels.push(panel);
+    for (plot, phase) in plots.iter().flat_map(|p| [(p, false), (p, true)]) {
+        let mut panel = reference_panel(plot, phase);
+        for curve in &plot.models {
+            let ink = ink(index_of(&labels, &curve.model))?;
+            panel.add(&curve.model, points(curve, phase), ink);
         }
+        panels.push(panel);
     }
     let mut legend = Vec::new();
     if let Some(plot) = plots.first() {

@@ -133,8 +133,6 @@ pub(super) fn run(args: &BridgeConvertArgs) -> Result<Answer> {
         counted(nodes, "node"),
         counted(count, "mode")
     );
-    Answer::new(
-        text,
-        &serde_json::json!({ "file": args.output, "nodes": nodes, "modes": count }),
-    )
+    let value = serde_json::json!({ "file": args.output, "nodes": nodes, "modes": count });
+    Answer::new(text, &value)
 }

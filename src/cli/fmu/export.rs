@@ -274,8 +274,6 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
             "motion and forces are those of the reference point: a structure that turns about the axis of this section, a = {axis} m from there, positive downwind, gives y + a·θ and takes M + a·F_y (docs/coupling.md)"
         );
     }
-    Answer::new(
-        text,
-        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict, "findings": findings }),
-    )
+    let value = serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict, "findings": findings });
+    Answer::new(text, &value)
 }
