@@ -58,21 +58,8 @@ pub(crate) fn flutter_figure(
     })
 }
 
-/// The same figure for all routes.
-pub(crate) fn routes_figure(
-    study: &Study,
-    curves: &[FlutterCurves],
-    onsets: &[Onset],
-    out: &mut OutputDir,
-) -> Result<()> {
-    let title = format!("{}: all routes", study.name);
-    figures::write("routes", out, || {
-        of_first_models(curves, onsets, &title, None)
-    })
-}
-
 /// The figure of the models that can be told apart in it.
-fn of_first_models(
+pub(super) fn of_first_models(
     curves: &[FlutterCurves],
     onsets: &[Onset],
     title: &str,

@@ -171,7 +171,7 @@ impl Stages<'_> {
         let Some(records) = records.filter(|_| self.study.select) else {
             return Ok(None);
         };
-        let selected = selected(&self.study, &self.deck, records, self.progress);
+        let selected = self.selected(records);
         match self.attempt("selection", selected)? {
             Some((study, recommended)) => {
                 self.study = study;
@@ -185,19 +185,14 @@ impl Stages<'_> {
             }
         }
     }
-}
 
-fn selected(
-    study: &Study,
-    deck: &Deck,
-    records: &RecordSet,
-    progress: &Progress,
-) -> Result<(Study, Option<Recommendation>)> {
-    let chosen = records.select(study.deck.speed_groups.as_deref())?;
-    let choice = Choice::default();
-    let (_, selection) = judge(&choice, study, deck, &chosen, progress)?;
-    let block = recommended(&choice, study, &selection)?;
-    Ok((in_front(study, block), selection.recommended))
+    fn selected(&self, records: &RecordSet) -> Result<(Study, Option<Recommendation>)> {
+        let (study, choice) = (&self.study, Choice::default());
+        let chosen = records.select(study.deck.speed_groups.as_deref())?;
+        let (_, selection) = judge(&choice, study, &self.deck, &chosen, self.progress)?;
+        let block = recommended(&choice, study, &selection)?;
+        Ok((in_front(study, block), selection.recommended))
+    }
 }
 
 /// The study with the model that `train` has selected, where it asks for one, among those to be read.

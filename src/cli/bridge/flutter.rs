@@ -71,7 +71,12 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
-    let scattered = scattered(scatter, &study, &results, progress).unwrap_or_else(|e| {
+    let scattered = scatter.zip(results.onset()).map(|(scatter, onset)| {
+        progress.counting("samples of the bridge", |on_done| {
+            study.scattered_onset(onset, &scatter, on_done)
+        })
+    });
+    let scattered = scattered.transpose().unwrap_or_else(|e| {
         failed.push(format!("scatter: {e}"));
         None
     });
@@ -144,21 +149,6 @@ impl BridgeFlutterArgs {
     }
 }
 
-fn scattered(
-    scatter: Option<Scatter>,
-    study: &BridgeStudy,
-    results: &BridgeFlutter,
-    progress: &Progress,
-) -> Result<Option<ScatteredOnset>> {
-    let (Some(scatter), Some(onset)) = (scatter, results.onset()) else {
-        return Ok(None);
-    };
-    let found = progress.counting("samples of the bridge", |on_done| {
-        study.scattered_onset(onset, &scatter, on_done)
-    });
-    found.map(Some)
-}
-
 fn scatter_line(of: &ScatteredOnset) -> String {
     let (samples, onsets) = (of.scatter.samples, &of.onsets);
     let (mean, deviation) = (onsets.mean_m_s, onsets.standard_deviation_m_s);
@@ -176,8 +166,7 @@ pub(super) fn computed(
 ) -> Result<(BridgeFlutter, Vec<String>)> {
     let results = progress.during("flutter of the bridge", || bridge_flutter(study))?;
     let mut failed = results.failed.clone();
-    let verdict = Verdict::judge(&study.evidence(&results, &failed));
-    if let Err(e) = staged(study, &results, &verdict, out) {
+    if let Err(e) = staged(study, &results, out) {
         failed.push(format!("figures: {e}"));
     }
     Ok((results, failed))
@@ -206,12 +195,8 @@ pub(super) fn renew(folder: &Path, text: &str) -> Result<()> {
 }
 
 /// Stages figures and tables.
-fn staged(
-    study: &BridgeStudy,
-    results: &BridgeFlutter,
-    verdict: &Verdict,
-    out: &mut OutputDir,
-) -> Result<()> {
+fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> Result<()> {
+    let verdict = &Verdict::judge(&study.evidence(results, &results.failed));
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
     if results.curves.branches.iter().any(|b| !b.points.is_empty()) {
