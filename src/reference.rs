@@ -85,9 +85,7 @@ const COMPUTATIONS: [(&str, Compute); 36] = [
     ("measured-decks-dissipative", models::dissipative),
     ("flat-plate-tables", models::table_errors),
     ("flat-plate-table-divergence", models::table_divergence),
-    ("iabse-1.1a-turbulence", || {
-        Ok(vec![flat_plate::gust_density()])
-    }),
+    ("iabse-1.1a-turbulence", flat_plate::gust_density),
     ("iabse-1.1a-buffeting", flat_plate::iabse_rms),
     ("iabse-1.1a-buffeting-adaptive", flat_plate::iabse_rms),
     ("iabse-1.1a-buffeting-published", flat_plate::iabse_rms),
