@@ -35,10 +35,8 @@ pub(crate) fn run(args: &StudyArgs, all: bool, progress: &Progress) -> Result<An
         let mut table = route_table(study, deck, &models)?;
         state_route_intervals(&mut table, study, &models, &known)?;
         drop(stage);
-        let (marked, title) = (
-            routes::marked(&table),
-            format!("{}: all routes", study.name),
-        );
+        let marked = routes::marked(&table);
+        let title = format!("{}: all routes", study.name);
         let draw = || of_first_models(&table.curves, &marked, &title, None);
         // a figure that cannot be drawn does not take the table with it
         if let Err(e) = figures::write("routes", &mut stages.out, draw) {

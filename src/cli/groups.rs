@@ -70,10 +70,8 @@ pub(super) fn page(cli: &Command, exit_codes: &[(u8, &str)]) -> String {
     text.push_str("## Options of all commands\n\n| option | what it does |\n|---|---|\n");
     for option in cli.get_arguments().filter(|a| a.is_global_set()) {
         let short = option.get_short().map(|c| format!("-{c}, "));
-        let (short, long) = (
-            short.unwrap_or_default(),
-            option.get_long().unwrap_or_default(),
-        );
+        let short = short.unwrap_or_default();
+        let long = option.get_long().unwrap_or_default();
         let help = option.get_help().map(ToString::to_string);
         let _ = writeln!(text, "| `{short}--{long}` | {} |", help.unwrap_or_default());
     }

@@ -311,10 +311,8 @@ fn ends(block: &BridgeSectionBlock, modes: &BridgeModes, section: usize) -> Resu
         None => Ok(otherwise),
         Some(name) => modes.index_of(format!("section[{section}].{key}"), name),
     };
-    let ends = (
-        place("from", &block.from, 0)?,
-        place("to", &block.to, last)?,
-    );
+    let from = place("from", &block.from, 0)?;
+    let to = place("to", &block.to, last)?;
     // whichever way the wind numbers them
-    Ok((ends.0.min(ends.1), ends.0.max(ends.1)))
+    Ok((from.min(to), from.max(to)))
 }

@@ -161,10 +161,8 @@ fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>
     let warping = magnitude_warped(pair, None);
     let (levelled, normalised) = (wavelet(pair, &levels), wavelet_normalised(pair, &levels));
     let density = probability_density(pair, true);
-    let (steady, coupled) = (
-        stationarity(pair, &surrogates),
-        bicoherence(pair, &coupling),
-    );
+    let steady = stationarity(pair, &surrogates);
+    let coupled = bicoherence(pair, &coupling);
     Ok(vec![
         Line::new("M_phi", "mean delay", phase(pair, &delay))?,
         Line::new("M_p", "largest absolute value", peak(pair))?,

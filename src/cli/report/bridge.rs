@@ -151,10 +151,8 @@ fn taking_part(shares: &[ModeShare]) -> PageSection {
     };
     let text =
         "Shares of the kinetic energy at the onset; phases to the mode with the largest share.";
-    let (title, header) = (
-        "Modes that take part in the flutter",
-        "mode | f in still air, Hz | share % | phase °",
-    );
+    let title = "Modes that take part in the flutter";
+    let header = "mode | f in still air, Hz | share % | phase °";
     PageSection {
         text: vec![text.to_owned()],
         ..PageSection::table(title, header, named.map(row).collect())
