@@ -51,10 +51,8 @@ fn commands<'a>(cli: &'a Command, names: &'a str) -> impl Iterator<Item = &'a Co
 
 /// The first sentence of a command's help.
 fn purpose(command: &Command) -> String {
-    command
-        .get_about()
-        .map(ToString::to_string)
-        .unwrap_or_default()
+    let about = command.get_about().map(ToString::to_string);
+    about.unwrap_or_default()
 }
 
 /// Every command with what it does, by groups, the options of all and the exit codes, in Markdown.

@@ -50,10 +50,8 @@ pub(super) fn write(
     for stretch in &chosen {
         panels.extend(stretch.panels(model, origin)?);
     }
-    let descriptions = chosen
-        .iter()
-        .map(RecordExcerpt::describe)
-        .collect::<Vec<_>>();
+    let descriptions = chosen.iter().map(RecordExcerpt::describe);
+    let descriptions = descriptions.collect::<Vec<_>>();
     let title = format!("Forces by motion: {}", descriptions.join(", "));
     figures::write(FORCES, out, || {
         time_history_figure(&title, &panels, "Periods of the motion")

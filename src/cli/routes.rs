@@ -179,8 +179,6 @@ fn found(o: &Onset, route: &Route) -> String {
 /// The onsets that the figure marks: one per force model, as on the cards.
 pub(crate) fn marked(table: &RouteTable) -> Vec<Onset> {
     let onsets = cards(table).filter_map(|route| route.search.onset());
-    onsets
-        .filter(|o| o.headline_m_s().is_ok())
-        .cloned()
-        .collect()
+    let determined = onsets.filter(|o| o.headline_m_s().is_ok());
+    determined.cloned().collect()
 }

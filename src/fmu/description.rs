@@ -127,10 +127,8 @@ fn interfaces(table: &VariableTable) -> Vec<Element> {
     let model_exchange = (!table.state_rates().is_empty()).then(|| {
         with_states(both("ModelExchange").with("completedIntegratorStepNotNeeded", false))
     });
-    model_exchange
-        .into_iter()
-        .chain([with_states(co_simulation)])
-        .collect()
+    let co_simulation = [with_states(co_simulation)];
+    model_exchange.into_iter().chain(co_simulation).collect()
 }
 
 /// Every unit that a variable uses, once, in the order of first use.

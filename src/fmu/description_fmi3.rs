@@ -159,10 +159,8 @@ impl GroupedVariables<'_> {
                     )
                 }
             };
-            let starts = names
-                .of
-                .iter()
-                .map(|name| Element::new("Start").with("value", name.to_string_lossy()));
+            let starts = names.of.iter().map(|name| name.to_string_lossy());
+            let starts = starts.map(|name| Element::new("Start").with("value", name));
             Element::new("String")
                 .with("name", &names.name)
                 .with("valueReference", reference)

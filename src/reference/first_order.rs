@@ -217,11 +217,9 @@ fn sampled(
 ) -> SampledTransfer {
     let lowest = TRAINING_HZ.into_iter().fold(f64::INFINITY, f64::min);
     let band = lowest * (1.0 - 1e-9)..=highest_hz() * (1.0 + 1e-9);
-    let errors = frequencies_hz
-        .iter()
-        .zip(g.iter().zip(system))
-        .filter(|(f, _)| band.contains(*f))
-        .map(|(_, (g, h))| (g - h).norm() / h.norm());
+    let all = frequencies_hz.iter().zip(g.iter().zip(system));
+    let inside = all.filter(|(f, _)| band.contains(*f));
+    let errors = inside.map(|(_, (g, h))| (g - h).norm() / h.norm());
     let values = frequencies_hz.iter().zip(g);
     let points = values.map(|(f, z)| (*f, z.norm(), z.arg().to_degrees()));
     SampledTransfer {

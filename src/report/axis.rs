@@ -86,10 +86,8 @@ fn widened(low: f64, high: f64) -> (f64, f64) {
 fn nice_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
     let lead = step / power;
-    let nice = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|n| lead <= n * 1.2)
-        .unwrap_or(10.0);
+    let mut steps = [1.0, 2.0, 5.0].into_iter();
+    let nice = steps.find(|n| lead <= n * 1.2).unwrap_or(10.0);
     nice * power
 }
 

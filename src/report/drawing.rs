@@ -82,11 +82,8 @@ impl Drawing {
         }
         let stacked = self.with_one_abscissa();
         let (left, width, legend) = self.widths();
-        let rows = self
-            .panels
-            .chunks(self.columns)
-            .map(|row| self.row(row, left, width));
-        let rows: Vec<(Area, f64)> = rows.collect();
+        let rows = self.panels.chunks(self.columns);
+        let rows: Vec<(Area, f64)> = rows.map(|row| self.row(row, left, width)).collect();
         if rows.is_empty() {
             return Err(Error::input(self.name, "data", "none"));
         }
@@ -139,10 +136,8 @@ impl Drawing {
         let outside = left + EDGE;
         let wanted = columns * (self.axes[0] + left + RIGHT);
         let legend = lay_out(&self.legend, wanted - outside);
-        let title = self
-            .title
-            .as_ref()
-            .map_or(0.0, |t| text_width(t, f64::from(TITLE_SIZE)));
+        let title = self.title.as_ref();
+        let title = title.map_or(0.0, |t| text_width(t, f64::from(TITLE_SIZE)));
         let width = wanted.max(outside + legend.width.max(title)) / columns;
         let legend = lay_out(&self.legend, columns * width - outside);
         (left, width, legend)

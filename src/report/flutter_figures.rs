@@ -126,11 +126,8 @@ impl VfVg {
         self.close.add("onset", vec![(speed, 0.0)], ink);
         self.note_onset(onset, colour);
         if !onset.spurious_speeds_m_s.is_empty() {
-            let crosses = onset
-                .spurious_speeds_m_s
-                .iter()
-                .map(|v| (*v, 0.0))
-                .collect();
+            let crosses = onset.spurious_speeds_m_s.iter();
+            let crosses = crosses.map(|v| (*v, 0.0)).collect();
             let name = format!("spurious crossings of {}", onset.at.model);
             self.damping
                 .add(name, crosses, Ink::dots(colour, Shape::Cross));

@@ -187,10 +187,8 @@ impl Panel {
             let dashed = Ink::stroke(colour, Some("3 3"), 0.9);
             ([Px::new(x, top), Px::new(x, bottom)], dashed)
         };
-        level
-            .into_iter()
-            .chain(self.uprights.iter().map(upright))
-            .collect()
+        let uprights = self.uprights.iter().map(upright);
+        level.into_iter().chain(uprights).collect()
     }
 
     fn write_labels(&self, scene: &mut Scene, area: Area) {

@@ -189,10 +189,8 @@ impl Scene {
 
     fn write(&mut self, at: Px, content: &str, size: u32, attributes: &str) {
         // what XML cannot hold becomes a space
-        let plain: String = content
-            .chars()
-            .map(|c| if c.is_control() { ' ' } else { c })
-            .collect();
+        let shown = |c: char| if c.is_control() { ' ' } else { c };
+        let plain: String = content.chars().map(shown).collect();
         let content = subscripted(&escape(&plain));
         let (x, y) = (rounded(at.x), rounded(at.y));
         self.add(format_args!(

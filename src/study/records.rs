@@ -170,11 +170,7 @@ impl RecordSet {
             let speed = record.header().mean_speed_m_s;
             chosen.contains(&group_of(&self.groups_m_s, speed))
         };
-        Ok(self
-            .records
-            .iter()
-            .map(AsRef::as_ref)
-            .filter(inside)
-            .collect())
+        let records = self.records.iter().map(AsRef::as_ref);
+        Ok(records.filter(inside).collect())
     }
 }

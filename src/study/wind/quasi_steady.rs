@@ -152,10 +152,8 @@ pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMoti
     released[0] = run.initial_vertical_m;
     released[n - 1] = run.initial_rotation_deg.to_radians();
     let with_rest = |row: &[f64]| -> Vec<f64> {
-        let rest = equilibrium
-            .displacement
-            .iter()
-            .chain(std::iter::repeat(&0.0));
+        let rest = equilibrium.displacement.iter();
+        let rest = rest.chain(std::iter::repeat(&0.0));
         row.iter().zip(rest).map(|(a, b)| a + b).collect()
     };
     let start = with_rest(&released);
@@ -229,10 +227,8 @@ fn linear_rows(
     let buffeting = structure.forces_at_axis(linear.buffeting.clone());
     let force = |time: f64| -> Vec<f64> {
         let (u, w) = gusts.at(time);
-        let scales = structure
-            .dofs
-            .iter()
-            .map(|d| d.force_scale(structure.width_m));
+        let dofs = structure.dofs.iter();
+        let scales = dofs.map(|d| d.force_scale(structure.width_m));
         let rows = buffeting.row_iter().zip(scales);
         rows.map(|(row, scale)| half_rho_v * scale * (row[0] * u + row[1] * w))
             .collect()

@@ -126,10 +126,8 @@ impl FmuExportArgs {
         whole: &TrainedModel,
         verdict: &Verdict,
     ) -> Result<(PathBuf, String, Value)> {
-        let gusts = self
-            .gusts
-            .as_ref()
-            .map(|_| self.admittance.unwrap_or_default());
+        let admittance = self.admittance.unwrap_or_default();
+        let gusts = self.gusts.as_ref().map(|_| admittance);
         let all = study.section_forces(whole, gusts)?;
         let mut forces = match &self.section {
             Some(name) => chosen(name, all)?,
