@@ -110,9 +110,8 @@ fn write(
 
 fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
     let dofs = &results.dofs;
-    let rms = dofs
-        .iter()
-        .map(|d| format!(" | >RMS {} {}", d.symbol(), d.shown_in().1));
+    let rms = dofs.iter();
+    let rms = rms.map(|d| format!(" | >RMS {} {}", d.symbol(), d.shown_in().1));
     let crossing = dofs.iter().map(|d| format!(" | >ν {} Hz", d.symbol()));
     let heads: String = rms.chain(crossing).collect();
     let mut table = TextTable::new(&format!(">V m/s{heads}"));

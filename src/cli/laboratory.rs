@@ -136,9 +136,8 @@ pub(super) fn processing_text(
     derivatives: Option<&IdentifiedDerivatives>,
 ) -> String {
     let mut text = format!("{}\n", raw.section);
-    let error = report
-        .lag_standard_error_s
-        .map(|e| format!(" ± {:.3}", 1e3 * e));
+    let error = report.lag_standard_error_s;
+    let error = error.map(|e| format!(" ± {:.3}", 1e3 * e));
     let (lag_ms, error) = (1e3 * report.lag_s, error.unwrap_or_default());
     let _ = writeln!(text, "  lag of the force channels {lag_ms:.3}{error} ms");
     text.extend(report.runs.iter().map(|run| format!("  {}\n", line(run))));

@@ -89,9 +89,8 @@ fn read(path: &Path) -> Result<(Vec<String>, Vec<Vec<String>>)> {
         |e: csv::Error| Error::input("", "rows of a CSV file", e.to_string()).in_file(path);
     let owned = |row: &csv::StringRecord| row.iter().map(|f| f.trim().to_owned()).collect();
     let names = owned(reader.headers().map_err(broken)?);
-    let rows = reader
-        .records()
-        .map(|row| row.map(|r| owned(&r)).map_err(broken));
+    let rows = reader.records();
+    let rows = rows.map(|row| row.map(|r| owned(&r)).map_err(broken));
     Ok((names, rows.collect::<Result<_>>()?))
 }
 

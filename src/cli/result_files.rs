@@ -84,9 +84,8 @@ pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
     for curve in curves {
         for branch in &curve.branches {
             for p in &branch.points {
-                let tested = p
-                    .in_tested_range
-                    .map_or("", |t| if t { "yes" } else { "no" });
+                let tested = p.in_tested_range;
+                let tested = tested.map_or("", |t| if t { "yes" } else { "no" });
                 let _ = writeln!(
                     text,
                     "{},{},{},{},{},{},{tested}",

@@ -155,9 +155,8 @@ fn judge(
             on_done(done, total);
         })
     })?;
-    let own = deck
-        .table()
-        .map(|_| deck.own_onset(&structure, search.speed_max_m_s));
+    let own = deck.table();
+    let own = own.map(|_| deck.own_onset(&structure, search.speed_max_m_s));
     if let Some(Ok(FlutterSearch::Onset(own))) = own {
         selection.put_beside(own.at.speed_m_s);
     }

@@ -58,9 +58,8 @@ fn line(r: &CaseResult) -> String {
         (None, Some(problem)) => problem.clone(),
         (None, None) => "nothing".to_owned(),
     };
-    let deviation = r
-        .deviation
-        .map_or(String::new(), |d| format!(" ({d:+.1e})"));
+    let deviation = r.deviation;
+    let deviation = deviation.map_or(String::new(), |d| format!(" ({d:+.1e})"));
     let source = r.source.words();
     let reason = match &r.reason[..] {
         "" => String::new(),

@@ -312,9 +312,8 @@ fn subscripted(content: &str) -> String {
     let mut text = String::new();
     let mut rest = content;
     while let Some((before, after)) = rest.split_once('_') {
-        let length = after
-            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
-            .unwrap_or(after.len());
+        let length = after.find(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let length = length.unwrap_or(after.len());
         let (word, remaining) = after.split_at(length);
         let mut backwards = before.chars().rev();
         let symbol = backwards.next().is_some_and(char::is_alphabetic)

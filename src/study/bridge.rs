@@ -252,9 +252,8 @@ fn groups(
     let mut groups = Vec::new();
     for (section, block) in file.sections.iter().enumerate() {
         let (first, last) = ends(block, modes, section)?;
-        let winds = modes.nodes[first..=last]
-            .iter()
-            .map(|n| file.wind.factor(n.along_m));
+        let winds = modes.nodes[first..=last].iter();
+        let winds = winds.map(|n| file.wind.factor(n.along_m));
         let (step, by_wind) = by_wind(&winds.collect::<Vec<_>>(), first);
         if let Some(step) = step {
             notes.push(format!(

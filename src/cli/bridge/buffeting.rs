@@ -38,9 +38,8 @@ pub(crate) struct BridgeBuffetingArgs {
 /// Runs the command.
 pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
-    let block = study
-        .buffeting_block()
-        .map_err(|e| e.in_file(&args.bridge.bridge))?;
+    let block = study.buffeting_block();
+    let block = block.map_err(|e| e.in_file(&args.bridge.bridge))?;
     if let Some(path) = &args.turbulence {
         return by_file(args, &study, &block, path);
     }
@@ -171,9 +170,8 @@ fn by_file(
     let odd = field.odd_speed(speed).map_err(|e| e.in_file(path))?;
     let of_field = study.findings_of(&field, Some(speed));
     warn(path, &[Vec::from_iter(odd), sentences(&of_field)].concat());
-    let found = study
-        .buffeting_by(block, speed, &field)
-        .map_err(|e| e.in_file(path))?;
+    let found = study.buffeting_by(block, speed, &field);
+    let found = found.map_err(|e| e.in_file(path))?;
     let of_nodes = rows(">RMS | >peak f.", &found.nodes, |n, i| {
         let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);
         vec![format!("{rms:.5e}"), of_motion(rms, format!("{peak:.3}"))]

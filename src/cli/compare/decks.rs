@@ -30,9 +30,8 @@ fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(S
             (true, "other speed", "_held_out"),
         ] {
             let scores = results.scores.iter();
-            let chosen: Vec<_> = scores
-                .filter(|s| s.case.motion == motion && s.case.held_out == held_out)
-                .collect();
+            let chosen = scores.filter(|s| s.case.motion == motion && s.case.held_out == held_out);
+            let chosen: Vec<_> = chosen.collect();
             if chosen.is_empty() {
                 continue;
             }

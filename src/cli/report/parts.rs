@@ -87,9 +87,8 @@ pub(super) fn sentence_row(model: &str, method: &str, answer: String) -> Vec<Str
 
 /// Takes the first figure of derivatives, which the summary shows.
 pub(super) fn first_derivatives(figures: &mut Vec<PageFigure>) -> Option<PageFigure> {
-    let at = figures
-        .iter()
-        .position(|f| f.title.starts_with("Derivatives"));
+    let mut all = figures.iter();
+    let at = all.position(|f| f.title.starts_with("Derivatives"));
     at.map(|at| figures.remove(at))
 }
 

@@ -157,9 +157,8 @@ impl Runtime {
         std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
         let mut found = Vec::new();
         for (platform, extension, ..) in PLATFORMS {
-            let file = folder
-                .join(platform)
-                .join(format!("{MODEL_IDENTIFIER}.{extension}"));
+            let own = folder.join(platform);
+            let file = own.join(format!("{MODEL_IDENTIFIER}.{extension}"));
             if file.is_file() {
                 let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
                 found.push(Self::new(platform, Cow::Owned(bytes)).map_err(|e| e.in_file(&file))?);

@@ -73,9 +73,8 @@ impl LoadedCase {
     fn new(case: &UserCase) -> Result<Self> {
         let a = &case.aerodynamics;
         let mut section = case.section.clone();
-        let dofs = section
-            .as_ref()
-            .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
+        let stated = section.as_ref();
+        let dofs = stated.map_or(Dof::TWO.to_vec(), SectionModel::dofs);
         let (model, tested): (Box<dyn Transfer>, _) = if let Some(path) = &a.model {
             let trained = TrainedModel::read(&case.directory.join(path))?;
             section.get_or_insert(trained.section);

@@ -205,9 +205,8 @@ impl BridgeStudy {
         let taken: Vec<usize> = bridge.groups.iter().flat_map(|g| g.nodes.clone()).collect();
         let bare = |n: &usize| !taken.contains(n) && bridge.nodes[*n].length_m > 0.0;
         let nodes: Vec<usize> = (0..bridge.nodes.len()).filter(bare).collect();
-        let factors = nodes
-            .iter()
-            .map(|n| self.file.wind.factor(bridge.nodes[*n].along_m));
+        let factors = nodes.iter();
+        let factors = factors.map(|n| self.file.wind.factor(bridge.nodes[*n].along_m));
         let wind_factor = factors.sum::<f64>() / nodes.len() as f64;
         (!nodes.is_empty()).then(|| StripGroup {
             name: IN_NO_SECTION.to_owned(),
