@@ -255,11 +255,8 @@ pub fn run(name: &str) -> Result<Vec<CaseResult>> {
     let Some((case, compute)) = cases.iter().find(|(case, _)| case.name == name) else {
         let names = COMPUTATIONS.map(|(name, _)| name).join(", ");
         let expected = format!("one of {names}");
-        return Err(Error::input(
-            "reference case",
-            expected,
-            format!("`{name}`"),
-        ));
+        let found = format!("`{name}`");
+        return Err(Error::input("reference case", expected, found));
     };
     Ok(case.run(*compute))
 }

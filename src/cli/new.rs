@@ -285,11 +285,8 @@ fn asked<T>(
         let _ = write!(out, "{question}: ").and_then(|()| out.flush());
         let mut line = String::new();
         if answers.read_line(&mut line).map_err(failed)? == 0 {
-            return Err(Error::input(
-                "--interactive",
-                format!("an answer to: {question}"),
-                "the end of the input",
-            ));
+            let (expected, found) = (format!("an answer to: {question}"), "the end of the input");
+            return Err(Error::input("--interactive", expected, found));
         }
         match read(line.trim()) {
             Ok(value) => return Ok(value),

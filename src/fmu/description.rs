@@ -167,11 +167,8 @@ pub(super) fn number(x: f64) -> Result<String> {
     if x.is_finite() {
         Ok(format!("{x:?}"))
     } else {
-        Err(Error::input(
-            "modelDescription.xml",
-            "a finite number",
-            x.to_string(),
-        ))
+        let (place, expected) = ("modelDescription.xml", "a finite number");
+        Err(Error::input(place, expected, x.to_string()))
     }
 }
 

@@ -101,12 +101,9 @@ impl Panel {
                 return Err(Error::input(place(&series.name), "points", "none"));
             }
             for (i, (x, y)) in series.points.iter().enumerate() {
-                ensure(
-                    x.is_finite() && y.is_finite(),
-                    place(&series.name),
-                    "finite numbers",
-                    format_args!("({x}, {y}) at point {}", i + 1),
-                )?;
+                let finite = x.is_finite() && y.is_finite();
+                let found = format_args!("({x}, {y}) at point {}", i + 1);
+                ensure(finite, place(&series.name), "finite numbers", found)?;
             }
         }
         Ok(())

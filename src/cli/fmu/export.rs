@@ -198,12 +198,8 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         return of_bridge.map_err(|e| in_input(&args.model, &[], e));
     }
     let expected = "--bridge with it: the structure of a section is its mass, spring and damper";
-    ensure(
-        args.kind != ExportKind::Structure,
-        "--kind structure",
-        expected,
-        "a trained model",
-    )?;
+    let other = args.kind != ExportKind::Structure;
+    ensure(other, "--kind structure", expected, "a trained model")?;
     let model = stages::read_model(&args.model)?;
     let coupled = args.kind == ExportKind::Section;
     let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);

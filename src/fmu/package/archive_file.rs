@@ -43,12 +43,8 @@ pub fn write_archive(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
         true => file.persist(path).map_err(|e| failed(e.error))?,
         false => file.persist_noclobber(path).map_err(|e| {
             if e.error.kind() == std::io::ErrorKind::AlreadyExists {
-                Error::input(
-                    "archive",
-                    "no file there yet",
-                    "one, which was left as it is",
-                )
-                .in_file(path)
+                let found = "one, which was left as it is";
+                Error::input("archive", "no file there yet", found).in_file(path)
             } else {
                 failed(e.error)
             }
