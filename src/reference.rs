@@ -300,14 +300,11 @@ pub fn validation_table(results: &[CaseResult]) -> String {
             None => "no result".into(),
         };
         let mark = if r.passed { "" } else { " **failed**" };
-        let _ = writeln!(
-            text,
-            "| {case} | {} | {} | {found}{mark} | ±{} | {} |",
-            escaped(&r.quantity),
-            with_unit(r.expected, r.decimals, &r.unit),
-            allowed(r),
-            escaped(&r.source.words())
-        );
+        let expected = with_unit(r.expected, r.decimals, &r.unit);
+        let (quantity, source) = (escaped(&r.quantity), escaped(&r.source.words()));
+        let (allowed, found) = (allowed(r), found + mark);
+        text +=
+            &format!("| {case} | {quantity} | {expected} | {found} | ±{allowed} | {source} |\n");
     }
     let passed = results.iter().filter(|r| r.passed).count();
     let _ = write!(

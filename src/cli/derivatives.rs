@@ -268,16 +268,11 @@ fn notations(sketch: Option<&Path>) -> Result<Answer> {
     let mut text = String::from("notation\n");
     for notation in Notation::NAMED {
         let usual = Convention::usual(notation);
-        let _ = writeln!(
-            text,
-            "  {notation:<10} {}{}; {}; usually over {}, {}\n             {}",
-            notation.title(),
-            also(notation),
-            notation.names(),
-            usual.argument,
-            usual.axes,
-            notation.definition()
-        );
+        let (title, also, names) = (notation.title(), also(notation), notation.names());
+        let (argument, axes, definition) = (usual.argument, usual.axes, notation.definition());
+        text +=
+            &format!("  {notation:<10} {title}{also}; {names}; usually over {argument}, {axes}\n");
+        text += &format!("             {definition}\n");
     }
     text.push_str("argument\n");
     for argument in Argument::ALL {

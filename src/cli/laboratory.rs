@@ -26,6 +26,11 @@ pub(super) fn laboratory_page(
     });
     let section = |title| PageSection::table(title, "", Vec::new());
     let lag = format!("Lag of the force channels {:.3} ms.", 1e3 * report.lag_s);
+    let (count, values) = (
+        counted(report.runs.len(), "run"),
+        counted(estimates.len(), "value"),
+    );
+    let remarks = counted(notes.len(), "remark");
     let runs = report.runs.iter().map(run_row);
     SectionsPage {
         title: format!("{}: processing of a campaign", raw.section),
@@ -34,12 +39,7 @@ pub(super) fn laboratory_page(
             raw.source,
             raw.licence.lines().next().unwrap_or("")
         ),
-        answer: format!(
-            "{}, {} of derivatives, {}",
-            counted(report.runs.len(), "run"),
-            counted(estimates.len(), "value"),
-            counted(notes.len(), "remark")
-        ),
+        answer: format!("{count}, {values} of derivatives, {remarks}"),
         sections: vec![
             PageSection {
                 text: notes.to_vec(),

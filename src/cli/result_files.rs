@@ -15,7 +15,6 @@ use crate::study::{Deck, TrainedWithReport};
 use crate::uncertainty::DerivativeInterval;
 use crate::units::{SAME_SPEED, group_of, near_groups};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 /// Force models that can be told apart in one figure.
 const MAX_CURVES: usize = 7;
@@ -86,16 +85,10 @@ pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
             for p in &branch.points {
                 let tested = p.in_tested_range;
                 let tested = tested.map_or("", |t| if t { "yes" } else { "no" });
-                let _ = writeln!(
-                    text,
-                    "{},{},{},{},{},{},{tested}",
-                    csv_cell(&curve.model),
-                    branch.name,
-                    p.speed_m_s,
-                    p.frequency_hz,
-                    p.damping_ratio,
-                    p.eigenvalue.re
-                );
+                let (model, branch) = (csv_cell(&curve.model), &branch.name);
+                let (speed, hertz, damping) = (p.speed_m_s, p.frequency_hz, p.damping_ratio);
+                let growth = p.eigenvalue.re;
+                text += &format!("{model},{branch},{speed},{hertz},{damping},{growth},{tested}\n");
             }
         }
     }

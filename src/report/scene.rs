@@ -298,13 +298,9 @@ fn path(points: &[Px]) -> String {
 }
 
 fn sides(area: Area) -> String {
-    format!(
-        " x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-        rounded(area.left),
-        rounded(area.top),
-        rounded(area.right - area.left),
-        rounded(area.bottom - area.top)
-    )
+    let (width, height) = (area.right - area.left, area.bottom - area.top);
+    let [x, y, width, height] = [area.left, area.top, width, height].map(rounded);
+    format!(" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
 /// `F_y` as a symbol with a subscript: a single letter, an underscore and one or two letters that end the word.

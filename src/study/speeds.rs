@@ -129,10 +129,9 @@ impl SpeedRange {
         } else {
             ""
         };
+        let (low, high) = ((1e3 * self.speed_min_m_s).round() / 1e3, self.speed_max_m_s);
         format!(
-            "{} to {} m/s in {}{why}",
-            (1e3 * self.speed_min_m_s).round() / 1e3,
-            self.speed_max_m_s,
+            "{low} to {high} m/s in {}{why}",
             counted(self.speeds, "step")
         )
     }

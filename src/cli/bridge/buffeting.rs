@@ -60,13 +60,8 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
             _ => format!("bridge_spectra_{speed}.csv"),
         };
         out.write(name, spectra_csv(results))?;
-        let _ = writeln!(
-            text,
-            "{} at {speed} m/s\n{}\n{}",
-            study.file.name,
-            forces(results),
-            table(results)
-        );
+        let (bridge, forces, table) = (&study.file.name, forces(results), table(results));
+        text += &format!("{bridge} at {speed} m/s\n{forces}\n{table}\n");
     }
     text.extend(unstable.iter().map(|why| format!("no answer: {why}\n")));
     if args.field {

@@ -21,13 +21,12 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
     );
     figures::write("modes", &mut out, || modes_figure(bridge, &title))?;
     let length: f64 = bridge.nodes.iter().map(|n| n.length_m).sum();
-    let mut text = format!(
-        "{}: {} over {length:.1} m, {}, {} of strips\n\n",
-        study.file.name,
+    let (nodes, modes) = (
         counted(bridge.nodes.len(), "node"),
         counted(bridge.modes.len(), "mode"),
-        counted(bridge.groups.len(), "group"),
     );
+    let (name, groups) = (&study.file.name, counted(bridge.groups.len(), "group"));
+    let mut text = format!("{name}: {nodes} over {length:.1} m, {modes}, {groups} of strips\n\n");
     let mut table = TextTable::new(">mode | >f Hz | >mass kg | >ζ % | main motion");
     for m in &bridge.modes {
         table.row([
@@ -40,15 +39,11 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
     }
     text.push_str(&table.text());
     for d in &bridge.dampers.masses {
-        let _ = writeln!(
-            text,
-            "{}: {} kg, {} Hz, ζ {} %, {}, {} m downwind of the axis",
-            d.name,
-            d.mass_kg,
-            d.frequency_hz,
-            100.0 * d.damping_ratio,
-            d.at.motion.name(),
-            d.at.offset_m
+        let (name, mass, hertz, percent) =
+            (&d.name, d.mass_kg, d.frequency_hz, 100.0 * d.damping_ratio);
+        let (motion, offset) = (d.at.motion.name(), d.at.offset_m);
+        text += &format!(
+            "{name}: {mass} kg, {hertz} Hz, ζ {percent} %, {motion}, {offset} m downwind of the axis\n"
         );
     }
     for l in &bridge.dampers.links {

@@ -54,14 +54,12 @@ pub(super) fn text(
 fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> String {
     let bridge = &study.by_model;
     let mut text = headline::text(&study.file.name, verdict, &[]);
-    let _ = writeln!(
-        text,
-        "Bridge    {}, {}, {} of strips; K refers to B = {} m",
+    let (nodes, modes) = (
         counted(bridge.nodes.len(), "node"),
         counted(bridge.modes.len(), "mode"),
-        counted(bridge.groups.len(), "group"),
-        bridge.width_m()
     );
+    let (groups, width) = (counted(bridge.groups.len(), "group"), bridge.width_m());
+    text += &format!("Bridge    {nodes}, {modes}, {groups} of strips; K refers to B = {width} m\n");
     text.extend(results.answers.iter().map(one));
     if !results.left_out.is_empty() {
         text.push_str("Onset with fewer modes (by share of the kinetic energy at the onset)\n");
@@ -143,16 +141,14 @@ fn one(answer: &BridgeAnswer) -> String {
                 Some(false) => "OUTSIDE the tested range",
                 None => "no tested range",
             };
-            let _ = writeln!(
-                text,
-                "  V_F {:.3} m/s at {:.4} Hz ({}); V* = V/(fB) {:.3}, K {:.4}, {tested}; {}",
-                o.at.speed_m_s,
-                o.at.frequency_hz,
-                o.at.method.name(),
+            let (speed, hertz, method) = (o.at.speed_m_s, o.at.frequency_hz, o.at.method.name());
+            let (v_star, branch) = (
                 o.at.reduced_velocity.v_star(),
-                o.at.reduced_frequency.full_width(),
-                ModeBranch::in_words(&o.branch)
+                ModeBranch::in_words(&o.branch),
             );
+            let k = o.at.reduced_frequency.full_width();
+            text += &format!("  V_F {speed:.3} m/s at {hertz:.4} Hz ({method}); ");
+            text += &format!("V* = V/(fB) {v_star:.3}, K {k:.4}, {tested}; {branch}\n");
             let _ = writeln!(text, "  {}", interval(&o.interval));
             if let Some(slope) = o.damping_slope_s_m {
                 let _ = writeln!(text, "  damping slope dζ/dV {slope:.5} s/m");

@@ -251,14 +251,14 @@ pub(super) fn sentences(verdict: &Verdict, motion: Option<String>) -> Vec<String
 
 /// The motion at the onset.
 fn motion(onset: &Onset) -> String {
-    format!(
-        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; {}.",
-        digits(onset.at.speed_m_s),
-        digits(onset.at.frequency_hz),
-        digits(onset.at.reduced_velocity.v_star()),
-        digits(onset.at.reduced_frequency.full_width()),
-        onset.mode_in_words(),
-    )
+    let (at, mode) = (&onset.at, onset.mode_in_words());
+    let [speed, hertz] = [at.speed_m_s, at.frequency_hz].map(digits);
+    let (v_star, k) = (
+        at.reduced_velocity.v_star(),
+        at.reduced_frequency.full_width(),
+    );
+    let [v_star, k] = [v_star, k].map(digits);
+    format!("Flutter onset at {speed} m/s with {hertz} Hz, V* = {v_star}, K = {k}; {mode}.")
 }
 
 /// Of a discrete model: Δs, the wind speed of the experiment, and Δt there.
