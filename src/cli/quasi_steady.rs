@@ -149,11 +149,8 @@ fn run_in_words(run: &SimulatedMotion) -> String {
         let (factor, unit) = dof.shown_in();
         let shown = |rows| spread(rows, i).map(|x| factor * x);
         let ([mean, rms], [of_linear, linear]) = (shown(&run.nonlinear), shown(&run.linear));
-        let _ = writeln!(
-            text,
-            "  {}: mean {mean:.5}, RMS {rms:.5} {unit}; linear: mean {of_linear:.5}, RMS {linear:.5}",
-            dof.symbol(),
-        );
+        text += &format!("  {}: mean {mean:.5}, RMS {rms:.5} {unit}; ", dof.symbol());
+        text += &format!("linear: mean {of_linear:.5}, RMS {linear:.5}\n");
     }
     text
 }

@@ -94,14 +94,11 @@ pub(super) fn ending(written: &[Written], more: &str, verbose: bool) -> String {
 fn details(study: &Study, summary: &Summary) -> String {
     let mut text = String::new();
     let s = &study.section;
-    let _ = writeln!(
-        text,
-        "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre",
-        to_tenths_of_mm(s.width_m),
-        s.vertical.mass_kg_m,
-        s.torsion.inertia_kg_m2_m,
-        s.air_density_kg_m3
-    );
+    let (width, density) = (to_tenths_of_mm(s.width_m), s.air_density_kg_m3);
+    let (mass, inertia) = (s.vertical.mass_kg_m, s.torsion.inertia_kg_m2_m);
+    text +=
+        &format!("Section   B {width} m, m {mass} kg/m, J {inertia} kg·m²/m, ρ {density} kg/m³; ");
+    text += "y and lift up, θ and moment nose-up, per metre\n";
     let _ = writeln!(text, "Speeds    {}\n", study.speeds().explain());
     let fits = summary.fits.iter();
     text.extend(fits.map(|of| fit(&of.model, &of.report, &of.uncertainty)));
@@ -126,18 +123,11 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
         some => format!("; poles {some}"),
     };
     let (residuals, condition) = (residuals.join(", "), report.condition_in_words());
-    let _ = writeln!(
-        text,
-        "          residual rms {residuals}; {condition}{poles}"
-    );
+    text += &format!("          residual rms {residuals}; {condition}{poles}\n");
     let range = report.tested_range;
     let [low, high] = [range.min, range.max].map(|k| k.full_width());
-    let _ = writeln!(
-        text,
-        "          tested K {low:.3} to {high:.3} (V* {:.2} to {:.2})",
-        TAU / high,
-        TAU / low,
-    );
+    let [slow, fast] = [high, low].map(|k| TAU / k);
+    text += &format!("          tested K {low:.3} to {high:.3} (V* {slow:.2} to {fast:.2})\n");
     text.extend(report.constraints.iter().map(held));
     match uncertainty {
         Ok(known) => text.extend(known.explain().map(|line| format!("          {line}\n"))),

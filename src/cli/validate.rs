@@ -42,11 +42,8 @@ fn table(results: &[CaseResult]) -> String {
         let _ = writeln!(text, "  {}", line(r));
     }
     let failed = results.iter().filter(|r| !r.passed).count();
-    let _ = writeln!(
-        text,
-        "{} figures, {failed} outside their tolerance",
-        results.len()
-    );
+    let all = results.len();
+    text += &format!("{all} figures, {failed} outside their tolerance\n");
     text
 }
 

@@ -53,12 +53,8 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
     let similarities = study.similarities();
     text.push_str("\nSimilarity of vertical and torsional modes, (∫φ_y φ_θ)²/(∫φ_y² ∫φ_θ²); a section study assumes 1:\n");
     for s in similarities.iter().take(PAIRS) {
-        let (vertical, torsional) = (s.vertical_mode, s.torsional_mode);
-        let _ = writeln!(
-            text,
-            "  modes {vertical:>3} and {torsional:>3}: {:.4}",
-            s.similarity
-        );
+        let (y, theta, similarity) = (s.vertical_mode, s.torsional_mode, s.similarity);
+        text += &format!("  modes {y:>3} and {theta:>3}: {similarity:.4}\n");
     }
     let mode = |m: &BridgeMode| {
         serde_json::json!({

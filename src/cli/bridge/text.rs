@@ -71,10 +71,7 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
         let change = |(v, full): (f64, f64)| format!(" ({:+.2} %)", 100.0 * (v / full - 1.0));
         let change = left.onset_m_s.zip(full).map(change).unwrap_or_default();
         let (modes, percent) = (left.modes.len(), 100.0 * left.below_share);
-        let _ = writeln!(
-            text,
-            "  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}"
-        );
+        text += &format!("  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}\n");
     }
     let sentences = beside_the_onset(results).into_iter();
     text.extend(sentences.map(|sentence| format!("{sentence}\n")));
@@ -163,11 +160,9 @@ fn one(answer: &BridgeAnswer) -> String {
     let modes = answer.motion.iter().flat_map(|m| &m.modes);
     for m in modes.filter(|m| m.energy_share >= NAMED_SHARE) {
         let (mode, hertz, percent) = (m.mode, m.frequency_hz, 100.0 * m.energy_share);
-        let _ = writeln!(
-            text,
-            "    mode {mode:>3} ({hertz:.4} Hz) {percent:>5.1} % of the kinetic energy, phase {:>6.1}°",
-            m.phase_deg
-        );
+        text +=
+            &format!("    mode {mode:>3} ({hertz:.4} Hz) {percent:>5.1} % of the kinetic energy, ");
+        text += &format!("phase {:>6.1}°\n", m.phase_deg);
     }
     text
 }

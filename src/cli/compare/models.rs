@@ -182,10 +182,7 @@ fn text(results: &ModelsComparison) -> String {
         };
         let coefficients = counted(model.coefficients, "coefficient");
         let (name, method) = (&model.name, &model.method);
-        let _ = writeln!(
-            text,
-            "{name}: {method}; {coefficients} a transfer function{poles}"
-        );
+        text += &format!("{name}: {method}; {coefficients} a transfer function{poles}\n");
     }
     text.push_str(
         "\nFrequency domain, bands of the thesis (±15 %, ±5°) around the measured derivatives\n",

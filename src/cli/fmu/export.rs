@@ -247,19 +247,13 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let platforms: Vec<_> = runtimes.iter().map(|r| r.platform).collect();
     let headline = verdict.iter().map(|v| headline::text(&model.name, v, &[]));
     let mut text: String = headline.collect();
-    let _ = writeln!(
-        text,
-        "wrote {}: {}{}, {}, for {}",
-        path.display(),
-        match strips {
-            None => String::new(),
-            Some(1) => "forces on one strip of ".to_owned(),
-            Some(n) => format!("forces on {n} strips of "),
-        },
-        model.name,
-        crate::trained_model::Model::kind(&model.model),
-        platforms.join(", ")
-    );
+    let of = match strips {
+        None => String::new(),
+        Some(1) => "forces on one strip of ".to_owned(),
+        Some(n) => format!("forces on {n} strips of "),
+    };
+    let (name, kind, all) = (&model.name, model.model.kind(), platforms.join(", "));
+    text += &format!("wrote {}: {of}{name}, {kind}, for {all}\n", path.display());
     text.push_str(&text::growth(&model.name, &growth));
     if strips.is_some() && verdict.is_some() {
         text.push_str("the verdict is on the section that the model states, not on a structure that takes its forces\n");
