@@ -53,9 +53,8 @@ pub(super) fn write(
     let descriptions = chosen.iter().map(RecordExcerpt::describe);
     let descriptions = descriptions.collect::<Vec<_>>();
     let title = format!("Forces by motion: {}", descriptions.join(", "));
-    figures::write(FORCES, out, || {
-        time_history_figure(&title, &panels, "Periods of the motion")
-    })
+    let draw = || time_history_figure(&title, &panels, "Periods of the motion");
+    figures::write(FORCES, out, draw)
 }
 
 /// A few periods of a record.

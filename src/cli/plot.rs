@@ -63,9 +63,8 @@ pub(crate) fn run(
     let folder = out.unwrap_or(folder_of(file));
     let mut out = OutputDir::new(folder)?;
     let abscissa = label(&names[x]);
-    figures::write(&stem, &mut out, || {
-        time_history_figure(&stem, &panels, &abscissa)
-    })?;
+    let draw = || time_history_figure(&stem, &panels, &abscissa);
+    figures::write(&stem, &mut out, draw)?;
     out.answer(String::new(), serde_json::json!({}))
 }
 

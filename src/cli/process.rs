@@ -77,9 +77,8 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
-    let reading = progress.during("reading the campaign", || {
-        Campaign::read(&args.campaign)?.load()
-    })?;
+    let work = || Campaign::read(&args.campaign)?.load();
+    let reading = progress.during("reading the campaign", work)?;
     let mut notes = reading.words(FindingSeverity::Note);
     let mut doubts = reading.words(FindingSeverity::Doubt);
     let raw = reading.raw;

@@ -52,14 +52,12 @@ fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> R
     if results.equilibria.points.is_empty() {
         return Ok(());
     }
-    figures::write("equilibrium", out, || {
-        equilibrium_figure(&study.name, &results.dofs, &results.equilibria)
-    })?;
+    let draw = || equilibrium_figure(&study.name, &results.dofs, &results.equilibria);
+    figures::write("equilibrium", out, draw)?;
     let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
     let curves = std::slice::from_ref(&results.curves);
-    figures::write("quasi_steady_modes", out, || {
-        vf_vg_figure(curves, &onsets, &study.name, Some(&results.verdict))
-    })
+    let draw = || vf_vg_figure(curves, &onsets, &study.name, Some(&results.verdict));
+    figures::write("quasi_steady_modes", out, draw)
 }
 
 /// The table as dots and the line that is computed with.
@@ -164,9 +162,8 @@ fn write_run(study: &WindStudy, run: &SimulatedMotion, out: &mut OutputDir) -> R
     let source = format!("the run of {RUN}.csv at {} m/s", run.speed_m_s);
     write_gusts(&study.name, &source, &gusts, &mut file).map_err(|e| Error::io(&path, e))?;
     let title = format!("{} at {} m/s", study.name, run.speed_m_s);
-    figures::write(RUN, out, || {
-        time_history_figure(&title, &panels(run), "Time t (s)")
-    })
+    let draw = || time_history_figure(&title, &panels(run), "Time t (s)");
+    figures::write(RUN, out, draw)
 }
 
 fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {

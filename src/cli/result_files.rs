@@ -52,9 +52,8 @@ pub(crate) fn flutter_figure(
     if curves.is_empty() {
         return Err(Error::Numerical("no modes to draw".into()));
     }
-    figures::write(FIGURE, out, || {
-        of_first_models(curves, onsets, &study.name, verdict)
-    })
+    let draw = || of_first_models(curves, onsets, &study.name, verdict);
+    figures::write(FIGURE, out, draw)
 }
 
 /// The figure of the models that can be told apart in it.
@@ -230,7 +229,6 @@ pub(super) fn write_response(
     let runs = runs.iter().map(|(label, rows)| (&label[..], &rows[..]));
     let panels = motion_panels(model.model.dofs(), &runs.collect::<Vec<_>>());
     let title = format!("{}: released below, at and above the onset", model.name);
-    figures::write(RESPONSE, out, || {
-        scaled_history_figure(&title, &panels, "Time t (s)", 2)
-    })
+    let draw = || scaled_history_figure(&title, &panels, "Time t (s)", 2);
+    figures::write(RESPONSE, out, draw)
 }

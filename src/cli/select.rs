@@ -96,9 +96,8 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     let note = all.note.as_ref().map(|n| format!("note: {n}\n"));
     let frequency_hz = compared_frequency_hz(args.frequency, &records)?;
     let (grid, selection) = judge(&args.choice, &study, &deck, &records, progress)?;
-    let metrics = progress.during("comparing forces", || {
-        metric_grid(&grid, &records, frequency_hz)
-    })?;
+    let work = || metric_grid(&grid, &records, frequency_hz);
+    let metrics = progress.during("comparing forces", work)?;
     let mut out = OutputDir::new(&args.study.directory())?;
     for (stem, figure) in figures(&study, &selection, &metrics)? {
         super::figures::write(stem, &mut out, || Ok(figure))?;

@@ -200,9 +200,8 @@ fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> 
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
     if results.curves.branches.iter().any(|b| !b.points.is_empty()) {
-        figures::write(FLUTTER_FIGURE, out, || {
-            bridge_curves_figure(results, verdict, &title)
-        })?;
+        let draw = || bridge_curves_figure(results, verdict, &title);
+        figures::write(FLUTTER_FIGURE, out, draw)?;
         let title = format!("{}: eigenvalues as the wind rises", study.file.name);
         figures::write(ROOTS_FIGURE, out, || bridge_roots_figure(results, &title))?;
         let curves = std::slice::from_ref(&results.curves);
@@ -210,18 +209,16 @@ fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> 
     }
     if let Some(panels) = panels(results) {
         let title = format!("{}: the mode that flutters", study.file.name);
-        figures::write(RESPONSE_FIGURE, out, || {
-            scaled_history_figure(&title, &panels, "Time t (s)", 2)
-        })?;
+        let draw = || scaled_history_figure(&title, &panels, "Time t (s)", 2);
+        figures::write(RESPONSE_FIGURE, out, draw)?;
     }
     for number in 0..study.sections.len() {
         write_derivatives(study, number, out)?;
     }
     if let Some(motion) = results.answers.last().and_then(|a| a.motion.as_ref()) {
         let title = format!("{}: motion at flutter", study.file.name);
-        figures::write(MOTION_FIGURE, out, || {
-            flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title)
-        })?;
+        let draw = || flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title);
+        figures::write(MOTION_FIGURE, out, draw)?;
         out.write("flutter_motion.csv", motion_csv(motion))?;
         out.write("flutter_animation.csv", animation_csv(motion))?;
     }
