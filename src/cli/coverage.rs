@@ -146,10 +146,9 @@ fn plan(plan: &CoveragePlan) -> String {
         time_s if time_s > 0.0 => format!("correlation time {time_s} s"),
         _ => "white".to_owned(),
     };
-    let poles = if plan.search_poles {
-        "searched"
-    } else {
-        "given"
+    let poles = match plan.search_poles {
+        true => "searched",
+        false => "given",
     };
     format!(
         "Truth {truth}; filters with poles {:?} ({poles}); noise {} % of each force, {noise}; {} repetitions\n\

@@ -80,10 +80,9 @@ fn text(report: &CheckReport) -> String {
         let verdict = if t.passed { "ok    " } else { "FAILED" };
         let _ = writeln!(text, "  {verdict} {}: {}", t.name, t.detail);
     }
-    let verdict = if report.passed() {
-        "passed"
-    } else {
-        "did not pass"
+    let verdict = match report.passed() {
+        true => "passed",
+        false => "did not pass",
     };
     let _ = writeln!(text, "{verdict}");
     text

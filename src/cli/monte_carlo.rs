@@ -125,10 +125,9 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
 
 /// The onset of the model itself.
 fn nominal(r: &MonteCarloResult) -> String {
-    let or_below = if r.nominal_or_below {
-        "at or below "
-    } else {
-        ""
+    let or_below = match r.nominal_or_below {
+        true => "at or below ",
+        false => "",
     };
     let speed = match r.nominal_m_s {
         Some(v) => format!("{v:.3} m/s"),

@@ -281,10 +281,9 @@ fn clear(directory: &Path) -> Result<()> {
         if name.starts_with(COMPLETE) {
             put_all(&path, directory)?;
         }
-        let removed = if path.is_dir() {
-            fs::remove_dir_all(&path)
-        } else {
-            fs::remove_file(&path)
+        let removed = match path.is_dir() {
+            true => fs::remove_dir_all(&path),
+            false => fs::remove_file(&path),
         };
         removed.map_err(|e| Error::io(&path, e))?;
     }

@@ -102,10 +102,9 @@ fn curves(names: &[String], rows: &[Vec<String>], x: usize, y: usize) -> Vec<Plo
     let mut curves: Vec<PlottedSeries> = Vec::new();
     for row in rows {
         let words: Vec<&str> = texts.iter().map(|c| row[*c].as_str()).collect();
-        let name = if words.is_empty() {
-            names[y].replace('_', " ")
-        } else {
-            words.join(", ")
+        let name = match words.is_empty() {
+            true => names[y].replace('_', " "),
+            false => words.join(", "),
         };
         let (Ok(a), Ok(b)) = (row[x].parse::<f64>(), row[y].parse::<f64>()) else {
             continue;

@@ -90,10 +90,9 @@ impl Drawing {
         let grid_width = self.columns as f64 * width;
         let grid_height: f64 = rows.iter().map(|(_, height)| height).sum();
         let head = self.title.as_ref().map_or(EDGE, |_| TITLE_HEIGHT + EDGE);
-        let foot = if legend.height > 0.0 {
-            legend.height + 2.0 * EDGE
-        } else {
-            EDGE
+        let foot = match legend.height > 0.0 {
+            true => legend.height + 2.0 * EDGE,
+            false => EDGE,
         };
         let mut scene = Scene::new(grid_width.ceil(), (head + grid_height + foot).ceil());
         if let Some(title) = &self.title {

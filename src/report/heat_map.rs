@@ -112,10 +112,9 @@ impl HeatMap {
         let corner = corner + Px::new(LEFT, TOP);
         let part = |v: f64| {
             let (a, b) = (self.scaled(low), self.scaled(high));
-            if b > a {
-                (self.scaled(v) - a) / (b - a)
-            } else {
-                0.5
+            match b > a {
+                true => (self.scaled(v) - a) / (b - a),
+                false => 0.5,
             }
         };
         let title = corner + Px::new(0.0, -8.0);

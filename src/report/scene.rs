@@ -201,10 +201,9 @@ impl Scene {
     /// A marker; filled ones get a white rim that keeps neighbours apart.
     pub(super) fn marker(&mut self, at: Px, marker: Ink) {
         let r = marker.size;
-        let (fill, rim) = if marker.hollow {
-            (WHITE, Ink::solid(marker.colour, 1.6))
-        } else {
-            (marker.colour, Ink::solid(WHITE, 0.8))
+        let (fill, rim) = match marker.hollow {
+            true => (WHITE, Ink::solid(marker.colour, 1.6)),
+            false => (marker.colour, Ink::solid(WHITE, 0.8)),
         };
         let around = |corners: &[[f64; 2]]| -> Vec<Px> {
             let corner = |c: &[f64; 2]| at + Px::new(c[0] * r, c[1] * r);

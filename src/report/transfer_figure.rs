@@ -57,10 +57,9 @@ pub(crate) fn transfer_figure(title: &str, plots: &[TransferPlot]) -> Result<Fig
 
 /// A panel of magnitudes or phases with the reference and the band around it.
 fn reference_panel(plot: &TransferPlot, phase: bool) -> Panel {
-    let y = if phase {
-        "Phase (°)"
-    } else {
-        "Magnitude (–)"
+    let y = match phase {
+        true => "Phase (°)",
+        false => "Magnitude (–)",
     };
     let mut panel = Panel::new(Axis::new("Frequency (Hz)").tight(), Axis::new(y));
     panel.title = Some(plot.name.clone());

@@ -124,10 +124,9 @@ impl SpeedRange {
 
     /// The range in words.
     pub(crate) fn explain(&self) -> String {
-        let why = if self.from_section {
-            ", from the section's frequencies, width and mass"
-        } else {
-            ""
+        let why = match self.from_section {
+            true => ", from the section's frequencies, width and mass",
+            false => "",
         };
         let (low, high) = ((1e3 * self.speed_min_m_s).round() / 1e3, self.speed_max_m_s);
         format!(

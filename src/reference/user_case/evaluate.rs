@@ -181,10 +181,9 @@ impl LoadedCase {
 
     fn onset(&self, route: Option<OnsetMethod>) -> Result<Onset> {
         let realizable = self.model.realizable();
-        let route = route.unwrap_or(if realizable.is_some() {
-            OnsetMethod::Eigenvalues
-        } else {
-            OnsetMethod::Determinant
+        let route = route.unwrap_or(match realizable.is_some() {
+            true => OnsetMethod::Eigenvalues,
+            false => OnsetMethod::Determinant,
         });
         let (s, model) = (&self.structure, self.model.as_ref());
         let search = OnsetSearch::up_to(self.speed_max);
