@@ -248,12 +248,10 @@ impl Study {
         }
         for (i, model) in self.models.iter().enumerate() {
             model.validate(&format!("model[{i}]"))?;
-            ensure(
-                self.models[..i].iter().all(|m| m.slug() != model.slug()),
-                format!("model[{i}].name"),
-                "a name of its own for every model",
-                format_args!("`{}` a second time", model.name),
-            )?;
+            let alone = self.models[..i].iter().all(|m| m.slug() != model.slug());
+            let expected = "a name of its own for every model";
+            let found = format_args!("`{}` a second time", model.name);
+            ensure(alone, format!("model[{i}].name"), expected, found)?;
         }
         self.flutter.validate("flutter")?;
         if let Some(block) = &self.coefficients {
@@ -324,12 +322,9 @@ impl ModelBlock {
     }
 
     fn validate(&self, place: &str) -> Result<()> {
-        ensure(
-            !self.slug().is_empty(),
-            format!("{place}.name"),
-            "a name with letters or digits",
-            format_args!("`{}`", self.name),
-        )?;
+        let expected = "a name with letters or digits";
+        let (named, found) = (!self.slug().is_empty(), format_args!("`{}`", self.name));
+        ensure(named, format!("{place}.name"), expected, found)?;
         let below = |key: &str, result: Result<()>| {
             result.map_err(|e| e.within(Place::from(place).key(key)))
         };

@@ -13,12 +13,9 @@ pub(super) const NOT_MET: u8 = 3;
 
 /// Text without the control characters of an input, which a terminal would obey.
 pub(super) fn plain(text: &str) -> String {
-    let shown = |c: char| {
-        if c.is_control() && !['\n', '\t'].contains(&c) {
-            char::REPLACEMENT_CHARACTER
-        } else {
-            c
-        }
+    let shown = |c: char| match c.is_control() && !['\n', '\t'].contains(&c) {
+        true => char::REPLACEMENT_CHARACTER,
+        false => c,
     };
     text.chars().map(shown).collect()
 }

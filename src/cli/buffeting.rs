@@ -110,9 +110,8 @@ fn write(
 
 fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
     let dofs = &results.dofs;
-    let rms = dofs
-        .iter()
-        .map(|d| format!(" | >RMS {} {}", d.symbol(), shown_in(*d).1));
+    let rms = dofs.iter();
+    let rms = rms.map(|d| format!(" | >RMS {} {}", d.symbol(), shown_in(*d).1));
     let crossing = dofs.iter().map(|d| format!(" | >ν {} Hz", d.symbol()));
     let heads: String = rms.chain(crossing).collect();
     let mut table = TextTable::new(&format!(">V m/s{heads}"));
@@ -123,18 +122,10 @@ fn text(study: &WindStudy, results: &BuffetingStudy) -> String {
         let speed = std::iter::once(format!("{:.2}", response.speed_m_s));
         table.row(speed.chain(rms).chain(crossing.map(|f| format!("{f:.4}"))));
     }
-    let mut text = format!(
-        "{}\nself-excited forces: {}\n\n{}",
-        study.name,
-        results.aerodynamics,
-        table.text()
-    );
-    text.extend(
-        results
-            .without_response()
-            .into_iter()
-            .map(|line| format!("{line}\n")),
-    );
+    let (name, forces, table) = (&study.name, &results.aerodynamics, table.text());
+    let mut text = format!("{name}\nself-excited forces: {forces}\n\n{table}");
+    let lines = results.without_response().into_iter();
+    text.extend(lines.map(|line| format!("{line}\n")));
     text.push_str(&tested(results));
     text.push_str(&time_domain(results));
     text
@@ -220,27 +211,16 @@ fn time_domain(results: &BuffetingStudy) -> String {
     let mut text = String::new();
     for domain in &results.time {
         let e = &domain.ensemble;
-        let _ = writeln!(
-            text,
-            "\ntime domain at {} m/s: {} of {:.0} s, step {:.4} s, warm-up {:.0} s",
-            e.speed_m_s,
-            counted(e.rms_of_records.len(), "record"),
-            e.duration_s,
-            e.step_s,
-            e.warm_up_s
-        );
+        let (speed, records) = (e.speed_m_s, counted(e.rms_of_records.len(), "record"));
+        let (seconds, step, warm_up) = (e.duration_s, e.step_s, e.warm_up_s);
+        text += &format!("\ntime domain at {speed} m/s: {records} of {seconds:.0} s, ");
+        text += &format!("step {step:.4} s, warm-up {warm_up:.0} s\n");
         for c in &domain.comparison {
             let (factor, unit) = shown_in(c.dof);
-            let _ = writeln!(
-                text,
-                "  {} RMS {:.5} ± {:.5} {}, frequency domain {:.5}: {:+.1} standard errors",
-                c.dof.symbol(),
-                factor * c.time_rms,
-                factor * c.standard_error,
-                unit,
-                factor * c.frequency_rms,
-                c.deviations
-            );
+            let all = [c.time_rms, c.standard_error, c.frequency_rms];
+            let ([rms, error, other], off) = (all.map(|x| factor * x), c.deviations);
+            text += &format!("  {} RMS {rms:.5} ± {error:.5} {unit}, ", c.dof.symbol());
+            text += &format!("frequency domain {other:.5}: {off:+.1} standard errors\n");
         }
         if let (Some(change), Some(fit)) = (&domain.model_change, &results.fit) {
             let of = results.dofs.iter().zip(change);

@@ -66,22 +66,13 @@ fn check(file: &Path, progress: &Progress) -> Result<Answer> {
 fn text(raw: &RawCampaign) -> String {
     let rig = &raw.rig;
     let cells: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
-    let mut text = format!(
-        "{}: model of {} m × {} m, cells {}\n",
-        raw.section,
-        rig.model_length_m,
-        to_tenths_of_mm(rig.model_width_m),
-        cells.join(", ")
-    );
+    let (section, cells) = (&raw.section, cells.join(", "));
+    let (length, width) = (rig.model_length_m, to_tenths_of_mm(rig.model_width_m));
+    let mut text = format!("{section}: model of {length} m × {width} m, cells {cells}\n");
     for run in &raw.runs {
-        let _ = writeln!(
-            text,
-            "  {}: {} motion, {:.3} m/s, {:.4} kg/m³",
-            run.name,
-            Dof::names(&run.motion),
-            run.mean_speed_m_s,
-            run.air_density_kg_m3
-        );
+        let (name, motion) = (&run.name, Dof::names(&run.motion));
+        let (speed, density) = (run.mean_speed_m_s, run.air_density_kg_m3);
+        text += &format!("  {name}: {motion} motion, {speed:.3} m/s, {density:.4} kg/m³\n");
         let still = run.still_air.iter().map(|r| ("still air", r));
         for (what, recording) in std::iter::once(("in wind", &run.in_wind)).chain(still) {
             let _ = writeln!(text, "    {what:<9} {}", described(recording));
@@ -94,7 +85,8 @@ fn text(raw: &RawCampaign) -> String {
         0 => text.push_str("nothing odd found\n"),
         n => {
             let _ = writeln!(text, "{}:", counted(n, "finding"));
-            text.extend(raw.findings.iter().map(|finding| format!("  {finding}\n")));
+            let findings = raw.findings.iter();
+            text.extend(findings.map(|finding| format!("  {finding}\n")));
         }
     }
     text

@@ -180,9 +180,8 @@ fn with_values(text: String, set: &[String]) -> Result<String> {
         let last = parts.pop().unwrap_or_default();
         let mut at = &mut root;
         for part in parts {
-            let next = at
-                .entry(part)
-                .or_insert_with(|| toml::Value::Table(toml::Table::new()));
+            let next = at.entry(part);
+            let next = next.or_insert_with(|| toml::Value::Table(toml::Table::new()));
             at = match next {
                 toml::Value::Table(table) => table,
                 // of a list, such as the models, its first entry

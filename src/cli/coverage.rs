@@ -130,11 +130,8 @@ fn text(r: &CoverageReport) -> String {
     if r.without_onset > 0 {
         let _ = writeln!(text, "repetitions without an onset: {}", r.without_onset);
     }
-    text.extend(
-        r.warnings
-            .iter()
-            .map(|warning| format!("warning: {warning}\n")),
-    );
+    let warnings = r.warnings.iter();
+    text.extend(warnings.map(|warning| format!("warning: {warning}\n")));
     text
 }
 
@@ -149,10 +146,9 @@ fn plan(plan: &CoveragePlan) -> String {
         time_s if time_s > 0.0 => format!("correlation time {time_s} s"),
         _ => "white".to_owned(),
     };
-    let poles = if plan.search_poles {
-        "searched"
-    } else {
-        "given"
+    let poles = match plan.search_poles {
+        true => "searched",
+        false => "given",
     };
     format!(
         "Truth {truth}; filters with poles {:?} ({poles}); noise {} % of each force, {noise}; {} repetitions\n\

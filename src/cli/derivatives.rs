@@ -201,11 +201,8 @@ fn refuse_own_input(args: &TableArgs, result: &Path) -> Result<()> {
 fn warnings(table: &DerivativeTable, from: &Convention, text: &mut String) -> Vec<String> {
     let found = sentences(&of_table(table, from));
     let warnings = [table.header.notes.clone(), found].concat();
-    text.extend(
-        warnings
-            .iter()
-            .map(|warning| format!("  warning: {warning}\n")),
-    );
+    let lines = warnings.iter();
+    text.extend(lines.map(|warning| format!("  warning: {warning}\n")));
     warnings
 }
 
@@ -227,16 +224,14 @@ fn show(args: &TableArgs, each_point: bool) -> Result<Answer> {
             text.push_str(&ranges(&symbol, derivative, &expressed));
         }
     }
-    Answer::new(
-        text,
-        &serde_json::json!({
-            "source": table.header.source,
-            "licence": table.header.licence,
-            "in_file": from,
-            "warnings": warnings,
-            "table": expressed,
-        }),
-    )
+    let value = serde_json::json!({
+        "source": table.header.source,
+        "licence": table.header.licence,
+        "in_file": from,
+        "warnings": warnings,
+        "table": expressed,
+    });
+    Answer::new(text, &value)
 }
 
 fn head(table: &DerivativeTable, from: &Convention, shown: &Convention) -> String {
@@ -272,21 +267,20 @@ fn notations(sketch: Option<&Path>) -> Result<Answer> {
     let mut text = String::from("notation\n");
     for notation in Notation::NAMED {
         let usual = Convention::usual(notation);
-        let _ = writeln!(
-            text,
-            "  {notation:<10} {}{}; {}; usually over {}, {}\n             {}",
-            notation.title(),
-            also(notation),
-            notation.names(),
-            usual.argument,
-            usual.axes,
-            notation.definition()
-        );
+        let (title, also, names) = (notation.title(), also(notation), notation.names());
+        let (argument, axes, definition) = (usual.argument, usual.axes, notation.definition());
+        text +=
+            &format!("  {notation:<10} {title}{also}; {names}; usually over {argument}, {axes}\n");
+        text += &format!("             {definition}\n");
     }
     text.push_str("argument\n");
-    text.extend(Argument::ALL.map(|a| format!("  {a:<10} {}\n", a.definition())));
+    for argument in Argument::ALL {
+        let _ = writeln!(text, "  {argument:<10} {}", argument.definition());
+    }
     text.push_str("axes\n");
-    text.extend(Axes::ALL.map(|axes| format!("  {axes:<10} {}\n", axes.words())));
+    for axes in Axes::ALL {
+        let _ = writeln!(text, "  {axes:<10} {}", axes.words());
+    }
     let notations = Notation::NAMED.map(|n| {
         serde_json::json!({
             "notation": n,

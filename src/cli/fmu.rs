@@ -60,39 +60,29 @@ fn check(path: &Path, no_run: bool, progress: &Progress) -> Result<Answer> {
 }
 
 fn text(report: &CheckReport) -> String {
-    let mut text = format!(
-        "{}\n{} by {}, {} variables, {}\n",
-        report.file,
-        report.model_name,
-        report.generation_tool,
-        report.variables,
-        match report.platforms.join(", ") {
-            none if none.is_empty() => "no binaries".to_owned(),
-            platforms => format!("binaries for {platforms}"),
-        }
-    );
+    let binaries = match report.platforms.join(", ") {
+        none if none.is_empty() => "no binaries".to_owned(),
+        platforms => format!("binaries for {platforms}"),
+    };
+    let (file, name, tool) = (&report.file, &report.model_name, &report.generation_tool);
+    let count = report.variables;
+    let mut text = format!("{file}\n{name} by {tool}, {count} variables, {binaries}\n");
     let _ = match &report.ran {
         Some(binary) => writeln!(text, "its code was run in this process: {binary}"),
         None => writeln!(text, "none of its code was run"),
     };
     for f in &report.findings {
-        let _ = writeln!(
-            text,
-            "  {}: {}: expected {}, found {}",
-            f.severity.name(),
-            f.place,
-            f.expected,
-            f.found
-        );
+        let (severity, place) = (f.severity.name(), &f.place);
+        let (expected, found) = (&f.expected, &f.found);
+        text += &format!("  {severity}: {place}: expected {expected}, found {found}\n");
     }
     for t in &report.trials {
         let verdict = if t.passed { "ok    " } else { "FAILED" };
         let _ = writeln!(text, "  {verdict} {}: {}", t.name, t.detail);
     }
-    let verdict = if report.passed() {
-        "passed"
-    } else {
-        "did not pass"
+    let verdict = match report.passed() {
+        true => "passed",
+        false => "did not pass",
     };
     let _ = writeln!(text, "{verdict}");
     text

@@ -51,10 +51,8 @@ fn commands<'a>(cli: &'a Command, names: &'a str) -> impl Iterator<Item = &'a Co
 
 /// The first sentence of a command's help.
 fn purpose(command: &Command) -> String {
-    command
-        .get_about()
-        .map(ToString::to_string)
-        .unwrap_or_default()
+    let about = command.get_about().map(ToString::to_string);
+    about.unwrap_or_default()
 }
 
 /// Every command with what it does, by groups, the options of all and the exit codes, in Markdown.
@@ -70,19 +68,15 @@ pub(super) fn page(cli: &Command, exit_codes: &[(u8, &str)]) -> String {
     text.push_str("## Options of all commands\n\n| option | what it does |\n|---|---|\n");
     for option in cli.get_arguments().filter(|a| a.is_global_set()) {
         let short = option.get_short().map(|c| format!("-{c}, "));
-        let (short, long) = (
-            short.unwrap_or_default(),
-            option.get_long().unwrap_or_default(),
-        );
+        let short = short.unwrap_or_default();
+        let long = option.get_long().unwrap_or_default();
         let help = option.get_help().map(ToString::to_string);
         let _ = writeln!(text, "| `{short}--{long}` | {} |", help.unwrap_or_default());
     }
     text.push_str("\n## Exit codes\n\n| code | meaning |\n|---|---|\n");
-    text.extend(
-        exit_codes
-            .iter()
-            .map(|(code, meaning)| format!("| {code} | {meaning} |\n")),
-    );
+    for (code, meaning) in exit_codes {
+        let _ = writeln!(text, "| {code} | {meaning} |");
+    }
     text.push_str("| 128 + n | ended by signal n |\n");
     text
 }

@@ -86,9 +86,8 @@ fn clear_left_behind(all: &Path) {
             continue;
         };
         let written = entry.metadata().and_then(|m| m.modified()).ok();
-        let is_old = written
-            .and_then(|t| t.elapsed().ok())
-            .is_some_and(|age| age > LEFT_BEHIND);
+        let age = written.and_then(|t| t.elapsed().ok());
+        let is_old = age.is_some_and(|age| age > LEFT_BEHIND);
         if is_old && !processes.join(number).exists() {
             remove(&entry.path());
         }

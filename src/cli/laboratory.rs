@@ -26,6 +26,11 @@ pub(super) fn laboratory_page(
     });
     let section = |title| PageSection::table(title, "", Vec::new());
     let lag = format!("Lag of the force channels {:.3} ms.", 1e3 * report.lag_s);
+    let (count, values) = (
+        counted(report.runs.len(), "run"),
+        counted(estimates.len(), "value"),
+    );
+    let remarks = counted(notes.len(), "remark");
     let runs = report.runs.iter().map(run_row);
     SectionsPage {
         title: format!("{}: processing of a campaign", raw.section),
@@ -34,12 +39,7 @@ pub(super) fn laboratory_page(
             raw.source,
             raw.licence.lines().next().unwrap_or("")
         ),
-        answer: format!(
-            "{}, {} of derivatives, {}",
-            counted(report.runs.len(), "run"),
-            counted(estimates.len(), "value"),
-            counted(notes.len(), "remark")
-        ),
+        answer: format!("{count}, {values} of derivatives, {remarks}"),
         sections: vec![
             PageSection {
                 text: notes.to_vec(),
@@ -136,9 +136,8 @@ pub(super) fn processing_text(
     derivatives: Option<&IdentifiedDerivatives>,
 ) -> String {
     let mut text = format!("{}\n", raw.section);
-    let error = report
-        .lag_standard_error_s
-        .map(|e| format!(" ± {:.3}", 1e3 * e));
+    let error = report.lag_standard_error_s;
+    let error = error.map(|e| format!(" ± {:.3}", 1e3 * e));
     let (lag_ms, error) = (1e3 * report.lag_s, error.unwrap_or_default());
     let _ = writeln!(text, "  lag of the force channels {lag_ms:.3}{error} ms");
     text.extend(report.runs.iter().map(|run| format!("  {}\n", line(run))));

@@ -35,9 +35,8 @@ pub(crate) fn lock(folder: &Path) -> Result<(Temporary, File)> {
         if !is_at(&file, &path) {
             continue;
         }
-        let written = file
-            .set_len(0)
-            .and_then(|()| write!(file, "{}", std::process::id()));
+        let written = file.set_len(0);
+        let written = written.and_then(|()| write!(file, "{}", std::process::id()));
         written.map_err(|e| Error::io(&path, e))?;
         // the name is removed first, then the file closed: nobody can take a lock on a file that is about to go
         return Ok((Temporary::new(path), file));

@@ -50,14 +50,11 @@ pub(super) fn write(
     for stretch in &chosen {
         panels.extend(stretch.panels(model, origin)?);
     }
-    let descriptions = chosen
-        .iter()
-        .map(RecordExcerpt::describe)
-        .collect::<Vec<_>>();
+    let descriptions = chosen.iter().map(RecordExcerpt::describe);
+    let descriptions = descriptions.collect::<Vec<_>>();
     let title = format!("Forces by motion: {}", descriptions.join(", "));
-    figures::write(FORCES, out, || {
-        time_history_figure(&title, &panels, "Periods of the motion")
-    })
+    let draw = || time_history_figure(&title, &panels, "Periods of the motion");
+    figures::write(FORCES, out, draw)
 }
 
 /// A few periods of a record.

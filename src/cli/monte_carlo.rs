@@ -52,9 +52,8 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
     result.verdict = verdict(&plan, &model, &result.findings)?;
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.plan)))?;
     if result.onsets > 1 {
-        figures::write("monte_carlo", &mut out, || {
-            onset_distribution_figure(&result)
-        })?;
+        let draw = || onset_distribution_figure(&result);
+        figures::write("monte_carlo", &mut out, draw)?;
     }
     out.write_json("monte_carlo.json", "monte-carlo-results", &result)?;
     let refused = result.verdict.iter().filter(|v| v.refuses());
@@ -126,10 +125,9 @@ fn onsets(r: &MonteCarloResult) -> Vec<String> {
 
 /// The onset of the model itself.
 fn nominal(r: &MonteCarloResult) -> String {
-    let or_below = if r.nominal_or_below {
-        "at or below "
-    } else {
-        ""
+    let or_below = match r.nominal_or_below {
+        true => "at or below ",
+        false => "",
     };
     let speed = match r.nominal_m_s {
         Some(v) => format!("{v:.3} m/s"),

@@ -1,5 +1,6 @@
 //! `aerodeck new`: a commented study to begin with.
 
+use super::text::deck_warnings;
 use super::vocabulary::{Answer, Error, OutputDir, Result, Study, Written, folder_of, list};
 use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation};
 use crate::files::derivatives::{StatedConvention, is_table_file, named_sheet};
@@ -98,9 +99,7 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let written = args.leave(&path, &text)?;
     let mut said = format!("{}\n", deck.description());
-    for warning in deck.warnings() {
-        said.push_str(&format!("warning: deck: {warning}\n"));
-    }
+    said.push_str(&deck_warnings(&deck));
     said.push_str(&format!(
         "{}{}run `aerodeck study {}`\n",
         list(&written),
@@ -110,10 +109,8 @@ pub(crate) fn run(args: &NewArgs) -> Result<Answer> {
         },
         path.display()
     ));
-    Answer::new(
-        said,
-        &serde_json::json!({ "deck": deck.description(), "warnings": deck.warnings(), "files": written }),
-    )
+    let value = serde_json::json!({ "deck": deck.description(), "warnings": deck.warnings(), "files": written });
+    Answer::new(said, &value)
 }
 
 /// The last part of a path.
@@ -288,11 +285,8 @@ fn asked<T>(
         let _ = write!(out, "{question}: ").and_then(|()| out.flush());
         let mut line = String::new();
         if answers.read_line(&mut line).map_err(failed)? == 0 {
-            return Err(Error::input(
-                "--interactive",
-                format!("an answer to: {question}"),
-                "the end of the input",
-            ));
+            let (expected, found) = (format!("an answer to: {question}"), "the end of the input");
+            return Err(Error::input("--interactive", expected, found));
         }
         match read(line.trim()) {
             Ok(value) => return Ok(value),

@@ -174,12 +174,10 @@ impl OutputDir {
         if force || !self.differs(Path::new(name))? {
             return Ok(());
         }
-        Err(Error::input(
-            "",
-            format!("the file that this command writes ({instead}, or --force to replace it)"),
-            "a file that differs, which was left as it is",
-        )
-        .in_file(self.target(name)))
+        let expected =
+            format!("the file that this command writes ({instead}, or --force to replace it)");
+        let found = "a file that differs, which was left as it is";
+        Err(Error::input("", expected, found).in_file(self.target(name)))
     }
 
     /// Lets a file that differs be replaced.
@@ -283,10 +281,9 @@ fn clear(directory: &Path) -> Result<()> {
         if name.starts_with(COMPLETE) {
             put_all(&path, directory)?;
         }
-        let removed = if path.is_dir() {
-            fs::remove_dir_all(&path)
-        } else {
-            fs::remove_file(&path)
+        let removed = match path.is_dir() {
+            true => fs::remove_dir_all(&path),
+            false => fs::remove_file(&path),
         };
         removed.map_err(|e| Error::io(&path, e))?;
     }

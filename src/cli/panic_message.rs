@@ -20,12 +20,10 @@ pub(crate) fn install() {
 fn write_panic_message(info: &PanicHookInfo<'_>) {
     let payload = info.payload();
     let text = payload.downcast_ref::<String>().map(String::as_str);
-    let what = text
-        .or_else(|| payload.downcast_ref::<&str>().copied())
-        .unwrap_or("no message");
-    let place = info
-        .location()
-        .map_or_else(|| "unknown place".to_owned(), ToString::to_string);
+    let what = text.or_else(|| payload.downcast_ref::<&str>().copied());
+    let what = what.unwrap_or("no message");
+    let place = info.location();
+    let place = place.map_or_else(|| "unknown place".to_owned(), ToString::to_string);
     // standard error may be closed, which is no reason to fail again
     let _ = writeln!(
         std::io::stderr(),

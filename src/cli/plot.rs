@@ -63,9 +63,8 @@ pub(crate) fn run(
     let folder = out.unwrap_or(folder_of(file));
     let mut out = OutputDir::new(folder)?;
     let abscissa = label(&names[x]);
-    figures::write(&stem, &mut out, || {
-        time_history_figure(&stem, &panels, &abscissa)
-    })?;
+    let draw = || time_history_figure(&stem, &panels, &abscissa);
+    figures::write(&stem, &mut out, draw)?;
     out.answer(String::new(), serde_json::json!({}))
 }
 
@@ -89,9 +88,8 @@ fn read(path: &Path) -> Result<(Vec<String>, Vec<Vec<String>>)> {
         |e: csv::Error| Error::input("", "rows of a CSV file", e.to_string()).in_file(path);
     let owned = |row: &csv::StringRecord| row.iter().map(|f| f.trim().to_owned()).collect();
     let names = owned(reader.headers().map_err(broken)?);
-    let rows = reader
-        .records()
-        .map(|row| row.map(|r| owned(&r)).map_err(broken));
+    let rows = reader.records();
+    let rows = rows.map(|row| row.map(|r| owned(&r)).map_err(broken));
     Ok((names, rows.collect::<Result<_>>()?))
 }
 
@@ -104,10 +102,9 @@ fn curves(names: &[String], rows: &[Vec<String>], x: usize, y: usize) -> Vec<Plo
     let mut curves: Vec<PlottedSeries> = Vec::new();
     for row in rows {
         let words: Vec<&str> = texts.iter().map(|c| row[*c].as_str()).collect();
-        let name = if words.is_empty() {
-            names[y].replace('_', " ")
-        } else {
-            words.join(", ")
+        let name = match words.is_empty() {
+            true => names[y].replace('_', " "),
+            false => words.join(", "),
         };
         let (Ok(a), Ok(b)) = (row[x].parse::<f64>(), row[y].parse::<f64>()) else {
             continue;

@@ -77,9 +77,8 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
-    let raw = progress.during("reading the campaign", || {
-        Campaign::read(&args.campaign)?.load()
-    })?;
+    let work = || Campaign::read(&args.campaign)?.load();
+    let raw = progress.during("reading the campaign", work)?;
     let mut notes = raw.words(FindingSeverity::Note);
     let mut doubts = raw.words(FindingSeverity::Doubt);
     let total = raw.runs.len();
@@ -222,7 +221,7 @@ fn draw_stages(processed: &Processed, out: &mut OutputDir, progress: &Progress) 
     let runs = processed.report.runs.iter().zip(&processed.stages);
     for ((run, stages), done) in runs.zip(1..) {
         let stem = format!("processing/{}", file_name(&run.run));
-        figures::write(&stem, out, || processing_figure(run, stages, run.dof))?;
+        figures::write(&stem, out, || processing_figure(run, stages))?;
         stage.at(done, count);
     }
     Ok(())
@@ -329,11 +328,10 @@ fn plot(
     if let Some(model) = quasi_steady {
         theories.push(lines("quasi-steady", model)?);
     }
-    let groups = found.speed_groups();
     let title = format!("{}: aerodynamic derivatives", raw.section);
     over_v_hat(&title, "95 % interval", |d| DerivativePlot {
         name: d.name().to_owned(),
-        measured: measured(found, &groups, d),
+        measured: measured(found, d),
         bars: found.each(d).map(bar).collect(),
         reference: lines_of(&theories, d),
         ..DerivativePlot::default()
@@ -341,13 +339,9 @@ fn plot(
 }
 
 /// The estimates of a derivative, one series per mean speed.
-fn measured(
-    found: &IdentifiedDerivatives,
-    groups: &[Vec<f64>],
-    d: Derivative,
-) -> Vec<PlottedSeries> {
-    let all: Vec<&DerivativeEstimate> = found.each(d).collect();
-    let group = |e: &DerivativeEstimate| group_of(groups, e.mean_speed_m_s);
+fn measured(found: &IdentifiedDerivatives, d: Derivative) -> Vec<PlottedSeries> {
+    let (all, groups) = (found.each(d).collect::<Vec<_>>(), found.speed_groups());
+    let group = |e: &DerivativeEstimate| group_of(&groups, e.mean_speed_m_s);
     let of_group = |all: &[&DerivativeEstimate]| {
         let points = all.iter().map(|e| (e.v_hat, e.value));
         PlottedSeries::new(speeds_label(&groups[group(all[0])]), points.collect())

@@ -52,14 +52,12 @@ fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> R
     if results.equilibria.points.is_empty() {
         return Ok(());
     }
-    figures::write("equilibrium", out, || {
-        equilibrium_figure(&study.name, &results.dofs, &results.equilibria)
-    })?;
+    let draw = || equilibrium_figure(&study.name, &results.dofs, &results.equilibria);
+    figures::write("equilibrium", out, draw)?;
     let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
     let curves = std::slice::from_ref(&results.curves);
-    figures::write("quasi_steady_modes", out, || {
-        vf_vg_figure(curves, &onsets, &study.name, Some(&results.verdict))
-    })
+    let draw = || vf_vg_figure(curves, &onsets, &study.name, Some(&results.verdict));
+    figures::write("quasi_steady_modes", out, draw)
 }
 
 /// The table as dots and the line that is computed with.
@@ -93,13 +91,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
         let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
     }
     let _ = write!(text, "\nStatic equilibrium\n{}", equilibria(results));
-    text.extend(
-        results
-            .equilibria
-            .end
-            .iter()
-            .map(|end| format!("{}\n", end.explain())),
-    );
+    let end = results.equilibria.end.iter();
+    text.extend(end.map(|end| format!("{}\n", end.explain())));
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
@@ -154,11 +147,8 @@ fn run_in_words(run: &SimulatedMotion) -> String {
         let (factor, unit) = shown_in(*dof);
         let shown = |rows| spread(rows, i).map(|x| factor * x);
         let ([mean, rms], [of_linear, linear]) = (shown(&run.nonlinear), shown(&run.linear));
-        let _ = writeln!(
-            text,
-            "  {}: mean {mean:.5}, RMS {rms:.5} {unit}; linear: mean {of_linear:.5}, RMS {linear:.5}",
-            dof.symbol(),
-        );
+        text += &format!("  {}: mean {mean:.5}, RMS {rms:.5} {unit}; ", dof.symbol());
+        text += &format!("linear: mean {of_linear:.5}, RMS {linear:.5}\n");
     }
     text
 }
@@ -172,9 +162,8 @@ fn write_run(study: &WindStudy, run: &SimulatedMotion, out: &mut OutputDir) -> R
     let source = format!("the run of {RUN}.csv at {} m/s", run.speed_m_s);
     write_gusts(&study.name, &source, &gusts, &mut file).map_err(|e| Error::io(&path, e))?;
     let title = format!("{} at {} m/s", study.name, run.speed_m_s);
-    figures::write(RUN, out, || {
-        time_history_figure(&title, &panels(run), "Time t (s)")
-    })
+    let draw = || time_history_figure(&title, &panels(run), "Time t (s)");
+    figures::write(RUN, out, draw)
 }
 
 fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {

@@ -229,7 +229,7 @@ fn of_summary(summary: &Summary, study: &Study) -> StudyPage {
     }
 }
 
-fn asked(summary: &Summary, study: &Study) -> Vec<(String, String)> {
+fn asked(summary: &Summary, study: &Study) -> Vec<(&'static str, String)> {
     let s = &study.section;
     let support =
         |inertia: String, frequency: Option<f64>, stiffness: Option<f64>, damping: f64| {
@@ -263,8 +263,7 @@ fn asked(summary: &Summary, study: &Study) -> Vec<(String, String)> {
     asked.push(("wind speeds", summary.speeds.explain()));
     let models: Vec<&str> = study.models.iter().map(|m| m.name.as_str()).collect();
     asked.push(("models", models.join(", ")));
-    let owned = |(name, value): (&str, String)| (name.to_owned(), value);
-    asked.into_iter().map(owned).collect()
+    asked
 }
 
 fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {

@@ -15,7 +15,6 @@ use crate::study::{Deck, TrainedWithReport};
 use crate::uncertainty::DerivativeInterval;
 use crate::units::{SAME_SPEED, group_of, near_groups};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 /// Force models that can be told apart in one figure.
 const MAX_CURVES: usize = 7;
@@ -53,26 +52,12 @@ pub(crate) fn flutter_figure(
     if curves.is_empty() {
         return Err(Error::Numerical("no modes to draw".into()));
     }
-    figures::write(FIGURE, out, || {
-        of_first_models(curves, onsets, &study.name, verdict)
-    })
-}
-
-/// The same figure for all routes.
-pub(crate) fn routes_figure(
-    study: &Study,
-    curves: &[FlutterCurves],
-    onsets: &[Onset],
-    out: &mut OutputDir,
-) -> Result<()> {
-    let title = format!("{}: all routes", study.name);
-    figures::write("routes", out, || {
-        of_first_models(curves, onsets, &title, None)
-    })
+    let draw = || of_first_models(curves, onsets, &study.name, verdict);
+    figures::write(FIGURE, out, draw)
 }
 
 /// The figure of the models that can be told apart in it.
-fn of_first_models(
+pub(super) fn of_first_models(
     curves: &[FlutterCurves],
     onsets: &[Onset],
     title: &str,
@@ -97,19 +82,12 @@ pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
     for curve in curves {
         for branch in &curve.branches {
             for p in &branch.points {
-                let tested = p
-                    .in_tested_range
-                    .map_or("", |t| if t { "yes" } else { "no" });
-                let _ = writeln!(
-                    text,
-                    "{},{},{},{},{},{},{tested}",
-                    csv_cell(&curve.model),
-                    branch.name,
-                    p.speed_m_s,
-                    p.frequency_hz,
-                    p.damping_ratio,
-                    p.eigenvalue.re
-                );
+                let tested = p.in_tested_range;
+                let tested = tested.map_or("", |t| if t { "yes" } else { "no" });
+                let (model, branch) = (csv_cell(&curve.model), &branch.name);
+                let (speed, hertz, damping) = (p.speed_m_s, p.frequency_hz, p.damping_ratio);
+                let growth = p.eigenvalue.re;
+                text += &format!("{model},{branch},{speed},{hertz},{damping},{growth},{tested}\n");
             }
         }
     }
@@ -251,7 +229,6 @@ pub(super) fn write_response(
     let runs = runs.iter().map(|(label, rows)| (&label[..], &rows[..]));
     let panels = motion_panels(model.model.dofs(), &runs.collect::<Vec<_>>());
     let title = format!("{}: released below, at and above the onset", model.name);
-    figures::write(RESPONSE, out, || {
-        scaled_history_figure(&title, &panels, "Time t (s)", 2)
-    })
+    let draw = || scaled_history_figure(&title, &panels, "Time t (s)", 2);
+    figures::write(RESPONSE, out, draw)
 }

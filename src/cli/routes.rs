@@ -22,14 +22,12 @@ pub(crate) fn text(table: &RouteTable, speed_max_m_s: f64) -> String {
     }
     let mut text = columns.text();
     text.extend(table.sanity.iter().map(sanity));
-    text.extend(
-        table
-            .left_out
-            .iter()
-            .map(|left_out| format!("left out: {left_out}\n")),
-    );
+    let left_out = table.left_out.iter();
+    text.extend(left_out.map(|left_out| format!("left out: {left_out}\n")));
     text.push('\n');
-    text.extend(cards(table).map(|route| card(route, table.sanity.as_ref(), speed_max_m_s)));
+    for route in cards(table) {
+        text.push_str(&card(route, table.sanity.as_ref(), speed_max_m_s));
+    }
     text
 }
 
@@ -111,34 +109,30 @@ fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> Stri
         }
     }
     let none_below = format!("none below {speed_max_m_s:.3} m/s");
-    let _ = write!(
-        text,
-        "  divergence {}; quasi-steady limit {}",
-        speed_or("none", route.divergence_m_s),
-        speed_or(&none_below, route.quasi_steady_m_s),
-    );
+    let divergence = speed_or("none", route.divergence_m_s);
+    let limit = speed_or(&none_below, route.quasi_steady_m_s);
+    text += &format!("  divergence {divergence}; quasi-steady limit {limit}");
     let _ = match sanity {
         Some(lines) => writeln!(text, "; Selberg {:.3} m/s", lines.selberg_m_s),
         None => writeln!(text),
     };
-    text.extend(
-        route
-            .warnings
-            .iter()
-            .map(|warning| format!("  warning: {warning}\n")),
-    );
+    let warnings = route.warnings.iter();
+    text.extend(warnings.map(|warning| format!("  warning: {warning}\n")));
     text
 }
 
 fn found(o: &Onset, route: &Route) -> String {
-    let mut text = format!(
-        "  V_F {:.3} m/s at {:.4} Hz; V* = V/(fB) {:.3}, V̂ = V/(ωB) {:.3}, K {:.4}",
+    let (speed, hertz, v_star) = (
         o.at.speed_m_s,
         o.at.frequency_hz,
         o.at.reduced_velocity.v_star(),
-        o.at.reduced_frequency.v_hat(),
-        o.at.reduced_frequency.full_width()
     );
+    let (v_hat, k) = (
+        o.at.reduced_frequency.v_hat(),
+        o.at.reduced_frequency.full_width(),
+    );
+    let mut text = format!("  V_F {speed:.3} m/s at {hertz:.4} Hz; V* = V/(fB) {v_star:.3}, ");
+    text += &format!("V̂ = V/(ωB) {v_hat:.3}, K {k:.4}");
     let _ = match &route.tested_range {
         Some(range) => {
             let (low, high, tested) = (range.max.v_hat(), range.min.v_hat(), tested(o, route));
@@ -175,14 +169,10 @@ fn found(o: &Onset, route: &Route) -> String {
             Dof::Torsion => "A2*",
         };
         let alone = p.alone_m_s.map(|v| format!("onset at {v:.3} m/s"));
-        let _ = writeln!(
-            text,
-            "    {:<8} {:>5.1} % of the kinetic energy, {name} {:+.4}, alone: {}",
-            p.dof.name(),
-            100.0 * p.energy_share,
-            p.direct_damping,
-            alone.unwrap_or("no onset".to_owned())
-        );
+        let alone = alone.unwrap_or("no onset".to_owned());
+        let (dof, percent, damping) = (p.dof.name(), 100.0 * p.energy_share, p.direct_damping);
+        text += &format!("    {dof:<8} {percent:>5.1} % of the kinetic energy, ");
+        text += &format!("{name} {damping:+.4}, alone: {alone}\n");
     }
     text
 }
@@ -190,8 +180,6 @@ fn found(o: &Onset, route: &Route) -> String {
 /// The onsets that the figure marks: one per force model, as on the cards.
 pub(crate) fn marked(table: &RouteTable) -> Vec<Onset> {
     let onsets = cards(table).filter_map(|route| route.search.onset());
-    onsets
-        .filter(|o| o.headline_m_s().is_ok())
-        .cloned()
-        .collect()
+    let determined = onsets.filter(|o| o.headline_m_s().is_ok());
+    determined.cloned().collect()
 }

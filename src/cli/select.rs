@@ -96,9 +96,8 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
     let note = all.note.as_ref().map(|n| format!("note: {n}\n"));
     let frequency_hz = compared_frequency_hz(args.frequency, &records)?;
     let (grid, selection) = judge(&args.choice, &study, &deck, &records, progress)?;
-    let metrics = progress.during("comparing forces", || {
-        metric_grid(&grid, &records, frequency_hz)
-    })?;
+    let work = || metric_grid(&grid, &records, frequency_hz);
+    let metrics = progress.during("comparing forces", work)?;
     let mut out = OutputDir::new(&args.study.directory())?;
     for (stem, figure) in figures(&study, &selection, &metrics)? {
         super::figures::write(stem, &mut out, || Ok(figure))?;
@@ -116,10 +115,8 @@ pub(crate) fn run(args: &SelectArgs, progress: &Progress) -> Result<Answer> {
         }
     }
     text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "selection": selection, "metrics": metrics, "files": written }),
-    )
+    let value = serde_json::json!({ "selection": selection, "metrics": metrics, "files": written });
+    Answer::new(text, &value)
 }
 
 /// The frequency that was asked for, which is among those that were tested.
@@ -157,9 +154,8 @@ fn judge(
             on_done(done, total);
         })
     })?;
-    let own = deck
-        .table()
-        .map(|_| deck.own_onset(&structure, search.speed_max_m_s));
+    let own = deck.table();
+    let own = own.map(|_| deck.own_onset(&structure, search.speed_max_m_s));
     if let Some(Ok(FlutterSearch::Onset(own))) = own {
         selection.put_beside(own.at.speed_m_s);
     }
@@ -173,7 +169,7 @@ impl Stages<'_> {
         let Some(records) = records.filter(|_| self.study.select) else {
             return Ok(None);
         };
-        let selected = selected(&self.study, &self.deck, records, self.progress);
+        let selected = self.selected(records);
         match self.attempt("selection", selected)? {
             Some((study, recommended)) => {
                 self.study = study;
@@ -187,19 +183,14 @@ impl Stages<'_> {
             }
         }
     }
-}
 
-fn selected(
-    study: &Study,
-    deck: &Deck,
-    records: &RecordSet,
-    progress: &Progress,
-) -> Result<(Study, Option<Recommendation>)> {
-    let chosen = records.select(study.deck.speed_groups.as_deref())?;
-    let choice = Choice::default();
-    let (_, selection) = judge(&choice, study, deck, &chosen, progress)?;
-    let block = recommended(&choice, study, &selection)?;
-    Ok((in_front(study, block), selection.recommended))
+    fn selected(&self, records: &RecordSet) -> Result<(Study, Option<Recommendation>)> {
+        let (study, choice) = (&self.study, Choice::default());
+        let chosen = records.select(study.deck.speed_groups.as_deref())?;
+        let (_, selection) = judge(&choice, study, &self.deck, &chosen, self.progress)?;
+        let block = recommended(&choice, study, &selection)?;
+        Ok((in_front(study, block), selection.recommended))
+    }
 }
 
 /// The study with the model that `train` has selected, where it asks for one, among those to be read.

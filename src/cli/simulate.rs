@@ -193,10 +193,8 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer> {
     let written = out.commit()?;
     let early = failed.iter().map(|why| format!("  ENDS EARLY: {why}\n"));
     let early: String = early.collect();
-    let (steps, verdict) = (
-        counted(rows.len() - 1, "step"),
-        verdict(&model, speed, &modes),
-    );
+    let steps = counted(rows.len() - 1, "step");
+    let verdict = verdict(&model, speed, &modes);
     let text = format!(
         "{title}: {steps} of {step} s\n{early}{verdict}{}",
         list(&written)

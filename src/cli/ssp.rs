@@ -53,14 +53,10 @@ pub(super) fn run(command: &SspCommand, progress: &Progress) -> Result<Answer> {
     let names: Vec<&str> = system.components.iter().map(|c| c.name.as_str()).collect();
     let parameters: usize = system.components.iter().map(|c| c.values.len()).sum();
     let text = headline::text(&study.file.name, &verdict, &[]);
-    let text = format!(
-        "{text}wrote {}: {} ({}), {}, {}\n",
-        path.display(),
-        counted(names.len(), "unit"),
-        names.join(", "),
-        counted(system.connections.len(), "connection"),
-        counted(parameters, "parameter"),
-    );
+    let (units, joined) = (counted(names.len(), "unit"), names.join(", "));
+    let connections = counted(system.connections.len(), "connection");
+    let (place, values) = (path.display(), counted(parameters, "parameter"));
+    let text = format!("{text}wrote {place}: {units} ({joined}), {connections}, {values}\n");
     let json = serde_json::json!({
         "ssp": path,
         "components": names,

@@ -156,7 +156,7 @@ impl<'a> Stages<'a> {
     pub(crate) fn flutter_of(&mut self, trained: &[TrainedWithReport]) -> Result<FlutterStudy> {
         let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
         let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
-        let mut results = flutter(&self.study, &self.deck, &models, &known, self.progress)?;
+        let mut results = self.flutter(&models, &known)?;
         self.failed.append(&mut results.failed);
         Ok(results)
     }
@@ -233,15 +233,10 @@ fn fingerprint(deck: &Deck) -> Result<Option<String>> {
 }
 
 /// Refuses speed groups that do not exist before anything is trained: that is a wrong key, no failure of a stage.
-fn check_groups(
-    study: &Study,
-    model: usize,
-    deck: &Deck,
-    records: Option<&RecordSet>,
-) -> Result<()> {
-    let block = &study.models[model];
+fn check_groups(study: &Study, i: usize, deck: &Deck, records: Option<&RecordSet>) -> Result<()> {
+    let block = &study.models[i];
     let (groups, place) = match block.speed_groups.as_deref() {
-        Some(own) => (Some(own), format!("model[{model}].speed_groups")),
+        Some(own) => (Some(own), format!("model[{i}].speed_groups")),
         None => {
             let of_deck = study.deck.speed_groups.as_deref();
             (of_deck, "deck.speed_groups".to_owned())
@@ -255,41 +250,53 @@ fn check_groups(
     chosen.map_err(|e| e.at(place))
 }
 
-/// Reads the models that `train` wrote; one that is not there, or is of another deck, is noted in `failed`.
-pub(crate) fn read_models(
-    study: &Study,
-    deck: &Deck,
-    directory: &Path,
-    failed: &mut Vec<StageFailure>,
-) -> Result<Vec<TrainedModel>> {
-    let file = directory.join(MODELS).join(TABLE);
-    let trained_on = std::fs::read_to_string(&file).ok();
-    let same = trained_on.is_none() || trained_on == fingerprint(deck)?;
-    let expected = "models of the deck of the study (run `aerodeck train` again)";
-    ensure(same, "", expected, "those of another table").map_err(|e| e.in_file(&file))?;
-    let own = deck.description();
-    let of_deck = |model: TrainedModel| {
-        let source = &model.provenance.source;
-        let expected = format_args!("{own}, the deck of the study (run `aerodeck train` again)");
-        ensure(*source == own, "provenance.source", expected, source).map(|()| model)
-    };
-    let mut models = Vec::new();
-    let mut first_error = None;
-    for block in &study.models {
-        let file = format!("{}.json", block.slug());
-        let path = directory.join(MODELS).join(file);
-        let model = read_model(&path).and_then(of_deck);
-        match model.map_err(|e| e.in_file(&path)) {
-            Ok(model) => models.push(model),
-            Err(e) => {
-                failed.push(StageFailure::new(format!("reading {}", block.name), &e));
-                first_error = first_error.or(Some(e));
+impl Stages<'_> {
+    /// Reads the models that `train` wrote; one that is not there, or is of another deck, is noted among the failures.
+    pub(crate) fn read_models(&mut self) -> Result<Vec<TrainedModel>> {
+        let (study, deck, folder) = (&self.study, &self.deck, self.out.target(MODELS));
+        let file = folder.join(TABLE);
+        let trained_on = std::fs::read_to_string(&file).ok();
+        let same = trained_on.is_none() || trained_on == fingerprint(deck)?;
+        let expected = "models of the deck of the study (run `aerodeck train` again)";
+        ensure(same, "", expected, "those of another table").map_err(|e| e.in_file(&file))?;
+        let own = deck.description();
+        let of_deck = |model: TrainedModel| {
+            let source = &model.provenance.source;
+            let expected =
+                format_args!("{own}, the deck of the study (run `aerodeck train` again)");
+            ensure(*source == own, "provenance.source", expected, source).map(|()| model)
+        };
+        let mut models = Vec::new();
+        let mut first_error = None;
+        for block in &study.models {
+            let file = format!("{}.json", block.slug());
+            let path = folder.join(file);
+            let model = read_model(&path).and_then(of_deck);
+            match model.map_err(|e| e.in_file(&path)) {
+                Ok(model) => models.push(model),
+                Err(e) => {
+                    let stage = format!("reading {}", block.name);
+                    self.failed.push(StageFailure::new(stage, &e));
+                    first_error = first_error.or(Some(e));
+                }
             }
         }
+        match first_error {
+            Some(error) if models.is_empty() => Err(error),
+            _ => Ok(models),
+        }
     }
-    match first_error {
-        Some(error) if models.is_empty() => Err(error),
-        _ => Ok(models),
+
+    /// Curves and onsets with their intervals.
+    pub(crate) fn flutter(
+        &self,
+        models: &[TrainedModel],
+        known: &[KnownUncertainty],
+    ) -> Result<FlutterStudy> {
+        let _stage = self.progress.stage("modes over wind speed");
+        let mut results = flutter_study(&self.study, &self.deck, models)?;
+        state_intervals(&mut results, &self.study, models, known)?;
+        Ok(results)
     }
 }
 
@@ -299,20 +306,6 @@ pub(crate) fn read_model(path: &Path) -> Result<TrainedModel> {
     ensure(path.exists(), "", expected, "no such file").map_err(|e| e.in_file(path))?;
     let what = "a trained model as written by `aerodeck train`";
     TrainedModel::read(path).map_err(|e| of_a_kind_of_ours(what, path).unwrap_or(e))
-}
-
-/// Curves and onsets with their intervals.
-pub(crate) fn flutter(
-    study: &Study,
-    deck: &Deck,
-    models: &[TrainedModel],
-    known: &[KnownUncertainty],
-    progress: &Progress,
-) -> Result<FlutterStudy> {
-    let _stage = progress.stage("modes over wind speed");
-    let mut results = flutter_study(study, deck, models)?;
-    state_intervals(&mut results, study, models, known)?;
-    Ok(results)
 }
 
 /// A refused export with the flag that allows it.

@@ -197,10 +197,9 @@ impl Stages<'_> {
         let at = &onset.at;
         if let Some(records) = records {
             let made = self.study.deck.records.is_empty();
-            let origin = if made {
-                "made from the deck"
-            } else {
-                "measured"
+            let origin = match made {
+                true => "made from the deck",
+                false => "measured",
             };
             let forces = measured_forces::write(&own.model, records, at, origin, &mut self.out);
             self.attempt("figure of measured forces", forces)?;

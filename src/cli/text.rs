@@ -51,12 +51,8 @@ pub(crate) fn chain(
             let _ = writeln!(text, "warning: {}: {warning}", summary.model);
         }
     }
-    text.extend(
-        summary
-            .buffeting
-            .iter()
-            .map(|line| format!("Gusts     {line}\n")),
-    );
+    let buffeting = summary.buffeting.iter();
+    text.extend(buffeting.map(|line| format!("Gusts     {line}\n")));
     text.push_str(&failures(&summary.failed));
     let others = rest.lines().filter(|l| l.starts_with("warning: "));
     let warnings = others.filter(|l| !text.contains(l)).count();
@@ -98,29 +94,18 @@ pub(super) fn ending(written: &[Written], more: &str, verbose: bool) -> String {
 fn details(study: &Study, summary: &Summary) -> String {
     let mut text = String::new();
     let s = &study.section;
-    let _ = writeln!(
-        text,
-        "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre",
-        to_tenths_of_mm(s.width_m),
-        s.vertical.mass_kg_m,
-        s.torsion.inertia_kg_m2_m,
-        s.air_density_kg_m3
-    );
+    let (width, density) = (to_tenths_of_mm(s.width_m), s.air_density_kg_m3);
+    let (mass, inertia) = (s.vertical.mass_kg_m, s.torsion.inertia_kg_m2_m);
+    text +=
+        &format!("Section   B {width} m, m {mass} kg/m, J {inertia} kg·m²/m, ρ {density} kg/m³; ");
+    text += "y and lift up, θ and moment nose-up, per metre\n";
     let _ = writeln!(text, "Speeds    {}\n", study.speeds().explain());
-    text.extend(
-        summary
-            .fits
-            .iter()
-            .map(|of| fit(&of.model, &of.report, &of.uncertainty)),
-    );
+    let fits = summary.fits.iter();
+    text.extend(fits.map(|of| fit(&of.model, &of.report, &of.uncertainty)));
     text.push('\n');
     text.push_str(&found(&summary.results));
-    text.extend(
-        summary
-            .stepped
-            .iter()
-            .map(|stepped| format!("{}\n", stepped.explain())),
-    );
+    let stepped = summary.stepped.iter();
+    text.extend(stepped.map(|stepped| format!("{}\n", stepped.explain())));
     text
 }
 
@@ -138,37 +123,27 @@ pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty
         some => format!("; poles {some}"),
     };
     let (residuals, condition) = (residuals.join(", "), report.condition_in_words());
-    let _ = writeln!(
-        text,
-        "          residual rms {residuals}; {condition}{poles}"
-    );
+    text += &format!("          residual rms {residuals}; {condition}{poles}\n");
     let range = report.tested_range;
     let [low, high] = [range.min, range.max].map(|k| k.full_width());
-    let _ = writeln!(
-        text,
-        "          tested K {low:.3} to {high:.3} (V* {:.2} to {:.2})",
-        TAU / high,
-        TAU / low,
-    );
+    let [slow, fast] = [high, low].map(|k| TAU / k);
+    text += &format!("          tested K {low:.3} to {high:.3} (V* {slow:.2} to {fast:.2})\n");
     text.extend(report.constraints.iter().map(held));
     match uncertainty {
         Ok(known) => text.extend(known.explain().map(|line| format!("          {line}\n"))),
         Err(reason) => text.push_str(&format!("          no interval of the onset: {reason}\n")),
     }
-    text.extend(
-        report
-            .notes
-            .iter()
-            .map(|note| format!("          note: {note}\n")),
-    );
+    let notes = report.notes.iter();
+    text.extend(notes.map(|note| format!("          note: {note}\n")));
     text
 }
 
 /// What held the fit back, what that costs and what it does to the onset.
 fn held(constraints: &ConstraintReport) -> String {
     let mut text = String::new();
-    let held = constraints.sentences.iter();
-    text.extend(held.map(|sentence| format!("          held: {sentence}\n")));
+    for sentence in &constraints.sentences {
+        let _ = writeln!(text, "          held: {sentence}");
+    }
     if let Some((cost, points)) = constraints.dearest() {
         let (force, motion) = (force_symbol(cost.force), cost.motion.symbol());
         let _ = write!(
@@ -219,12 +194,8 @@ pub(crate) fn onsets(results: &FlutterStudy) -> String {
         text.push_str(&without_interval(o));
         text.push_str(&warnings(&o.at.model, &o.warnings));
     }
-    text.extend(
-        results
-            .unstable
-            .iter()
-            .map(|s| warnings(&s.at.model, &s.warnings)),
-    );
+    let unstable = results.unstable.iter();
+    text.extend(unstable.map(|s| warnings(&s.at.model, &s.warnings)));
     text
 }
 

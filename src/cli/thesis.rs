@@ -40,11 +40,9 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
         ..
     } = stages;
     let mut text = format!("{}\n\n", study.name);
-    text.extend(
-        trained
-            .iter()
-            .map(|t| text::fit(&t.model.name, &t.report, &t.uncertainty)),
-    );
+    for t in &trained {
+        text.push_str(&text::fit(&t.model.name, &t.report, &t.uncertainty));
+    }
     text.push('\n');
     text.push_str(&text::onsets(&results));
     text.push_str(&text::deviations(&results));
@@ -64,11 +62,9 @@ pub(crate) fn run(left_in: Option<&Path>, progress: &Progress) -> Result<Answer>
         left.write("thesis.html", rendered(&page)?)?;
         text.push_str(&list(&left.commit()?));
     }
-    let answer = Answer::new(
-        text,
-        &serde_json::json!({ "printed_m_s": PRINTED_M_S, "flutter": results, "failed": failed }),
-    )?;
-    Ok(answer.passed_if(failed.is_empty()))
+    let value =
+        serde_json::json!({ "printed_m_s": PRINTED_M_S, "flutter": results, "failed": failed });
+    Ok(Answer::new(text, &value)?.passed_if(failed.is_empty()))
 }
 
 /// Decimals of the numbers printed in section 2.5: bounds of α by (2.36) and (2.37), the end of the third impulse response.

@@ -2,7 +2,6 @@
 
 use super::stages::Stages;
 use super::vocabulary::{Answer, OutputDir, Progress, Result, StudyArgs};
-use std::fmt::Write as _;
 
 /// Runs the command.
 pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
@@ -13,14 +12,12 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
     for record in &records {
         let h = &record.header;
         let samples = record.motion.first().map_or(0, Vec::len);
-        let _ = writeln!(
-            text,
-            "  {}: {:.2} m/s, {} frequencies, {samples} samples at {} Hz",
-            h.name,
-            h.mean_speed_m_s,
-            h.segments.len(),
-            h.sampling_hz,
+        let (name, speed, rate) = (&h.name, h.mean_speed_m_s, h.sampling_hz);
+        let tested = format!(
+            "{} frequencies, {samples} samples at {rate} Hz",
+            h.segments.len()
         );
+        text += &format!("  {name}: {speed:.2} m/s, {tested}\n");
     }
     let headers: Vec<_> = records.iter().map(|r| r.header.clone()).collect();
     let value = serde_json::json!({ "records": headers });

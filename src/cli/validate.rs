@@ -42,11 +42,8 @@ fn table(results: &[CaseResult]) -> String {
         let _ = writeln!(text, "  {}", line(r));
     }
     let failed = results.iter().filter(|r| !r.passed).count();
-    let _ = writeln!(
-        text,
-        "{} figures, {failed} outside their tolerance",
-        results.len()
-    );
+    let all = results.len();
+    text += &format!("{all} figures, {failed} outside their tolerance\n");
     text
 }
 
@@ -58,9 +55,8 @@ fn line(r: &CaseResult) -> String {
         (None, Some(problem)) => problem.clone(),
         (None, None) => "nothing".to_owned(),
     };
-    let deviation = r
-        .deviation
-        .map_or(String::new(), |d| format!(" ({d:+.1e})"));
+    let deviation = r.deviation;
+    let deviation = deviation.map_or(String::new(), |d| format!(" ({d:+.1e})"));
     let source = r.source.words();
     let reason = match &r.reason[..] {
         "" => String::new(),

@@ -26,9 +26,8 @@ pub fn model_description(resources: &Resources, reals_only: bool, label: &Label)
     let table = resources.described_table()?;
     let (table, references) = &table.listed(reals_only);
     let variables = references.iter().zip(table.variables());
-    let variables = variables
-        .map(|(reference, v)| scalar(*reference, v))
-        .collect::<Result<Vec<_>>>()?;
+    let variables = variables.map(|(reference, v)| scalar(*reference, v));
+    let variables = variables.collect::<Result<Vec<_>>>()?;
     let root = described(resources, label, "2.0", "guid")
         .containing(interfaces(table))
         .containing([
@@ -127,10 +126,8 @@ fn interfaces(table: &VariableTable) -> Vec<Element> {
     let model_exchange = (!table.state_rates().is_empty()).then(|| {
         with_states(both("ModelExchange").with("completedIntegratorStepNotNeeded", false))
     });
-    model_exchange
-        .into_iter()
-        .chain([with_states(co_simulation)])
-        .collect()
+    let co_simulation = [with_states(co_simulation)];
+    model_exchange.into_iter().chain(co_simulation).collect()
 }
 
 /// Every unit that a variable uses, once, in the order of first use.
@@ -170,11 +167,8 @@ pub(super) fn number(x: f64) -> Result<String> {
     if x.is_finite() {
         Ok(format!("{x:?}"))
     } else {
-        Err(Error::input(
-            "modelDescription.xml",
-            "a finite number",
-            x.to_string(),
-        ))
+        let (place, expected) = ("modelDescription.xml", "a finite number");
+        Err(Error::input(place, expected, x.to_string()))
     }
 }
 
@@ -227,12 +221,10 @@ pub(super) fn experiment(e: &Experiment) -> Result<Element> {
 /// Outputs, rates of the states and unknowns of the initialisation with their dependencies, by one-based index, in the order of the table.
 fn structure(table: &VariableTable) -> Element {
     let variables = || table.variables().iter().enumerate();
-    let outputs = variables()
-        .filter(|(_, v)| v.causality == Causality::Output)
-        .map(|(i, v)| unknown(i, &v.direct_inputs));
-    let initial = variables()
-        .filter(|(_, v)| v.is_initial_unknown())
-        .map(|(i, v)| unknown(i, &v.initial_dependencies));
+    let outputs = variables().filter(|(_, v)| v.causality == Causality::Output);
+    let outputs = outputs.map(|(i, v)| unknown(i, &v.direct_inputs));
+    let initial = variables().filter(|(_, v)| v.is_initial_unknown());
+    let initial = initial.map(|(i, v)| unknown(i, &v.initial_dependencies));
     let rates = table.state_rates().into_iter();
     let rates = rates.map(|i| unknown(i, &table.variables()[i].direct_inputs));
     let rates: Vec<Element> = rates.collect();

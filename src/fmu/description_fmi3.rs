@@ -159,10 +159,8 @@ impl GroupedVariables<'_> {
                     )
                 }
             };
-            let starts = names
-                .of
-                .iter()
-                .map(|name| Element::new("Start").with("value", name.to_string_lossy()));
+            let starts = names.of.iter().map(|name| name.to_string_lossy());
+            let starts = starts.map(|name| Element::new("Start").with("value", name));
             Element::new("String")
                 .with("name", &names.name)
                 .with("valueReference", reference)
@@ -199,9 +197,8 @@ impl GroupedVariables<'_> {
             let on = places.iter().flat_map(|p| &self.at(*p).direct_inputs);
             self.unknown(name, reference, on)
         };
-        let outputs = all()
-            .filter(|(_, places)| self.at(places[0]).causality == Causality::Output)
-            .map(|(reference, places)| direct("Output", reference, places));
+        let outputs = all().filter(|(_, places)| self.at(places[0]).causality == Causality::Output);
+        let outputs = outputs.map(|(reference, places)| direct("Output", reference, places));
         let rates = self.table.state_rates().into_iter();
         let rates = rates.filter_map(|place| {
             let reference = self.groups.reference_of(place)?;

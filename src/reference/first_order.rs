@@ -92,9 +92,8 @@ pub fn first_order_example() -> Result<FirstOrderResults> {
     let frequencies_hz: Vec<f64> = (1..=120).map(|i| 0.05 * f64::from(i)).collect();
     let system = exact(&frequencies_hz);
     let sample = |label: String, model: &Model| {
-        let g = frequencies_hz
-            .iter()
-            .map(|f| Ok(model.transfer(ReducedFrequency::from_full_width(TAU * f))?[(0, 0)]));
+        let g = frequencies_hz.iter();
+        let g = g.map(|f| Ok(model.transfer(ReducedFrequency::from_full_width(TAU * f))?[(0, 0)]));
         let g = g.collect::<Result<Vec<_>>>()?;
         Ok::<_, Error>(sampled(label, &frequencies_hz, &g, &system))
     };
@@ -217,11 +216,9 @@ fn sampled(
 ) -> SampledTransfer {
     let lowest = TRAINING_HZ.into_iter().fold(f64::INFINITY, f64::min);
     let band = lowest * (1.0 - 1e-9)..=highest_hz() * (1.0 + 1e-9);
-    let errors = frequencies_hz
-        .iter()
-        .zip(g.iter().zip(system))
-        .filter(|(f, _)| band.contains(*f))
-        .map(|(_, (g, h))| (g - h).norm() / h.norm());
+    let all = frequencies_hz.iter().zip(g.iter().zip(system));
+    let inside = all.filter(|(f, _)| band.contains(*f));
+    let errors = inside.map(|(_, (g, h))| (g - h).norm() / h.norm());
     let values = frequencies_hz.iter().zip(g);
     let points = values.map(|(f, z)| (*f, z.norm(), z.arg().to_degrees()));
     SampledTransfer {
@@ -236,9 +233,8 @@ fn impulses(coefficients: &[f64]) -> [Vec<f64>; 2] {
     let count = (6.0 * TIME_CONSTANT_S / STEP_S).round() as usize;
     let ratio = STEP_S / TIME_CONSTANT_S;
     let g = impulse_response(ALPHA, coefficients.len(), count);
-    let model = g
-        .column_iter()
-        .map(|g| g.iter().zip(coefficients).map(|(g, c)| g * c).sum());
+    let columns = g.column_iter();
+    let model = columns.map(|g| g.iter().zip(coefficients).map(|(g, c)| g * c).sum());
     [
         (0..count)
             .map(|k| ratio * (-ratio * k as f64).exp())

@@ -239,12 +239,13 @@ const W: Gust = Gust {
     admittance: Admittance::Davenport { decay: 7.0 },
 };
 
-/// RMS of `y` and of `θ·B/2` (m) at the five speeds.
 /// Density of the vertical gusts at 0.278 Hz and 45 m/s, m²/s.
-pub(super) fn gust_density() -> f64 {
-    W.spectrum.density(GustComponent::Vertical, 0.278, 45.0)
+pub(super) fn gust_density() -> Result<Vec<f64>> {
+    let vertical = GustComponent::Vertical;
+    Ok(vec![W.spectrum.density(vertical, 0.278, 45.0)])
 }
 
+/// RMS of `y` and of `θ·B/2` (m) at the five speeds.
 pub(super) fn iabse_rms() -> Result<Vec<f64>> {
     let structure = SectionModel::iabse_1_1a().structure()?;
     let turbulence = Turbulence {

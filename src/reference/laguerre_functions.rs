@@ -25,11 +25,8 @@ pub fn laguerre_functions() -> Result<[Lines; 6]> {
     let discrete = |alpha, orders: std::ops::Range<usize>, samples| {
         let g = impulse_response(alpha, 5, samples);
         let numbered = |n| {
-            g.row(n)
-                .iter()
-                .enumerate()
-                .map(|(k, y)| (k as f64, *y))
-                .collect()
+            let (row, point) = (g.row(n), |(k, y): (usize, &f64)| (k as f64, *y));
+            row.iter().enumerate().map(point).collect()
         };
         orders.map(numbered).collect::<Vec<_>>()
     };

@@ -45,10 +45,9 @@ impl Axis {
         }
         let window = self.within.unwrap_or((f64::MIN, f64::MAX));
         let (inner_low, inner_high) = (low.max(window.0), high.min(window.1));
-        let (mut low, mut high) = if inner_high - inner_low > 1e-9 * low.abs().max(high.abs()) {
-            (inner_low, inner_high)
-        } else {
-            widened(low, high)
+        let (mut low, mut high) = match inner_high - inner_low > 1e-9 * low.abs().max(high.abs()) {
+            true => (inner_low, inner_high),
+            false => widened(low, high),
         };
         if self.range.is_none() && !self.tight {
             let margin = 0.05 * (high - low);
@@ -86,10 +85,8 @@ fn widened(low: f64, high: f64) -> (f64, f64) {
 fn nice_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
     let lead = step / power;
-    let nice = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|n| lead <= n * 1.2)
-        .unwrap_or(10.0);
+    let mut steps = [1.0, 2.0, 5.0].into_iter();
+    let nice = steps.find(|n| lead <= n * 1.2).unwrap_or(10.0);
     nice * power
 }
 
@@ -118,10 +115,9 @@ impl Scale {
 
     /// Where a value stands between the ends: the value itself or its decimal logarithm.
     pub(super) fn place(&self, value: f64) -> f64 {
-        if self.logarithmic {
-            value.log10()
-        } else {
-            value
+        match self.logarithmic {
+            true => value.log10(),
+            false => value,
         }
     }
 
@@ -175,10 +171,9 @@ pub(super) fn signed(number: String) -> String {
 
 /// Four significant digits without an exponent.
 pub(super) fn significant(value: f64) -> String {
-    let decimals = if value.abs() > 0.0 {
-        (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize
-    } else {
-        0
+    let decimals = match value.abs() > 0.0 {
+        true => (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize,
+        false => 0,
     };
     signed(format!("{value:.decimals$}"))
 }

@@ -87,10 +87,9 @@ fn reference_ink(i: usize) -> Result<Ink> {
 /// Black dots for one series; several in colours and shapes, from the far end of the palette, where no line is.
 fn measured_ink(i: usize, count: usize) -> Result<Ink> {
     const SHAPES: [Shape; 3] = [Shape::Circle, Shape::Square, Shape::Diamond];
-    let colour = if count == 1 {
-        BLACK
-    } else {
-        colour(PLACE, (i + 3) % 7)?
+    let colour = match count == 1 {
+        true => BLACK,
+        false => colour(PLACE, (i + 3) % 7)?,
     };
     Ok(Ink {
         size: 2.7,

@@ -82,21 +82,17 @@ impl Drawing {
         }
         let stacked = self.with_one_abscissa();
         let (left, width, legend) = self.widths();
-        let rows = self
-            .panels
-            .chunks(self.columns)
-            .map(|row| self.row(row, left, width));
-        let rows: Vec<(Area, f64)> = rows.collect();
+        let rows = self.panels.chunks(self.columns);
+        let rows: Vec<(Area, f64)> = rows.map(|row| self.row(row, left, width)).collect();
         if rows.is_empty() {
             return Err(Error::input(self.name, "data", "none"));
         }
         let grid_width = self.columns as f64 * width;
         let grid_height: f64 = rows.iter().map(|(_, height)| height).sum();
         let head = self.title.as_ref().map_or(EDGE, |_| TITLE_HEIGHT + EDGE);
-        let foot = if legend.height > 0.0 {
-            legend.height + 2.0 * EDGE
-        } else {
-            EDGE
+        let foot = match legend.height > 0.0 {
+            true => legend.height + 2.0 * EDGE,
+            false => EDGE,
         };
         let mut scene = Scene::new(grid_width.ceil(), (head + grid_height + foot).ceil());
         if let Some(title) = &self.title {
@@ -139,10 +135,8 @@ impl Drawing {
         let outside = left + EDGE;
         let wanted = columns * (self.axes[0] + left + RIGHT);
         let legend = lay_out(&self.legend, wanted - outside);
-        let title = self
-            .title
-            .as_ref()
-            .map_or(0.0, |t| text_width(t, f64::from(TITLE_SIZE)));
+        let title = self.title.as_ref();
+        let title = title.map_or(0.0, |t| text_width(t, f64::from(TITLE_SIZE)));
         let width = wanted.max(outside + legend.width.max(title)) / columns;
         let legend = lay_out(&self.legend, columns * width - outside);
         (left, width, legend)

@@ -126,11 +126,8 @@ impl VfVg {
         self.close.add("onset", vec![(speed, 0.0)], ink);
         self.note_onset(onset, colour);
         if !onset.spurious_speeds_m_s.is_empty() {
-            let crosses = onset
-                .spurious_speeds_m_s
-                .iter()
-                .map(|v| (*v, 0.0))
-                .collect();
+            let crosses = onset.spurious_speeds_m_s.iter();
+            let crosses = crosses.map(|v| (*v, 0.0)).collect();
             let name = format!("spurious crossings of {}", onset.at.model);
             self.damping
                 .add(name, crosses, Ink::dots(colour, Shape::Cross));
@@ -320,14 +317,12 @@ fn onset_marker(colour: &'static str, shape: Shape, hollow: bool) -> Ink {
 
 /// The onset in words, for the legend; numbers first, as the middle of a line that is too long is left out.
 fn statement(onset: &Onset) -> String {
+    let (at, branch) = (&onset.at, ModeBranch::in_words(&onset.branch));
+    let [speed, hertz, v_star] =
+        [at.speed_m_s, at.frequency_hz, at.reduced_velocity.v_star()].map(significant);
+    let (model, method) = (&at.model, at.method.name());
     format!(
-        "Onset V = {} m/s, f = {} Hz, V/(fB) = {}: {}, {} ({})",
-        significant(onset.at.speed_m_s),
-        significant(onset.at.frequency_hz),
-        significant(onset.at.reduced_velocity.v_star()),
-        onset.at.model,
-        ModeBranch::in_words(&onset.branch),
-        onset.at.method.name(),
+        "Onset V = {speed} m/s, f = {hertz} Hz, V/(fB) = {v_star}: {model}, {branch} ({method})"
     )
 }
 

@@ -60,12 +60,10 @@ pub(crate) fn heat_map_figure(title: &str, maps: &[HeatMap], columns: usize) -> 
         return Err(Error::input(PLACE, "at least one map", "none"));
     }
     for map in maps {
-        ensure(
-            !map.x.is_empty() && map.values.len() == map.x.len() * map.rows,
-            format!("{PLACE} {}", map.title),
-            format_args!("{} values", map.x.len() * map.rows),
-            map.values.len(),
-        )?;
+        let (found, cells) = (map.values.len(), map.x.len() * map.rows);
+        let (place, full) = (format!("{PLACE} {}", map.title), found == cells);
+        let expected = format_args!("{cells} values");
+        ensure(!map.x.is_empty() && full, place, expected, found)?;
     }
     let height = |m: &HeatMap| TOP + ROW * m.rows as f64 + BOTTOM;
     let panel_width = LEFT + WIDTH + RIGHT;
@@ -114,10 +112,9 @@ impl HeatMap {
         let corner = corner + Px::new(LEFT, TOP);
         let part = |v: f64| {
             let (a, b) = (self.scaled(low), self.scaled(high));
-            if b > a {
-                (self.scaled(v) - a) / (b - a)
-            } else {
-                0.5
+            match b > a {
+                true => (self.scaled(v) - a) / (b - a),
+                false => 0.5,
             }
         };
         let title = corner + Px::new(0.0, -8.0);

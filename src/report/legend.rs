@@ -69,10 +69,8 @@ pub(super) fn lay_out(groups: &[Vec<Entry>], width: f64) -> LegendLayout<'_> {
         height: 0.0,
     };
     for group in groups {
-        let widths: Vec<f64> = group
-            .iter()
-            .map(|e| SAMPLE + 8.0 + text_width(&e.label, f64::from(SIZE)) + GAP)
-            .collect();
+        let room = |e: &Entry| SAMPLE + 8.0 + text_width(&e.label, f64::from(SIZE)) + GAP;
+        let widths: Vec<f64> = group.iter().map(room).collect();
         if widths.iter().sum::<f64>() <= width + GAP {
             legend.add_row(group, &widths);
         } else {

@@ -101,12 +101,9 @@ impl Panel {
                 return Err(Error::input(place(&series.name), "points", "none"));
             }
             for (i, (x, y)) in series.points.iter().enumerate() {
-                ensure(
-                    x.is_finite() && y.is_finite(),
-                    place(&series.name),
-                    "finite numbers",
-                    format_args!("({x}, {y}) at point {}", i + 1),
-                )?;
+                let finite = x.is_finite() && y.is_finite();
+                let found = format_args!("({x}, {y}) at point {}", i + 1);
+                ensure(finite, place(&series.name), "finite numbers", found)?;
             }
         }
         Ok(())
@@ -187,10 +184,8 @@ impl Panel {
             let dashed = Ink::stroke(colour, Some("3 3"), 0.9);
             ([Px::new(x, top), Px::new(x, bottom)], dashed)
         };
-        level
-            .into_iter()
-            .chain(self.uprights.iter().map(upright))
-            .collect()
+        let uprights = self.uprights.iter().map(upright);
+        level.into_iter().chain(uprights).collect()
     }
 
     fn write_labels(&self, scene: &mut Scene, area: Area) {

@@ -15,21 +15,17 @@ const PERIODS: f64 = 3.0;
 ///
 /// # Errors
 /// [`Error::Input`] for a run without stages or numbers that are not finite.
-pub(crate) fn processing_figure(
-    run: &RunReport,
-    stages: &[SectionSignals],
-    dof: Dof,
-) -> Result<Figure> {
+pub(crate) fn processing_figure(run: &RunReport, stages: &[SectionSignals]) -> Result<Figure> {
     let Some(last) = stages.last() else {
         return Err(Error::input(PLACE, "stages", "none"));
     };
-    let (force, motion) = (dof as usize, run.dof as usize);
+    let (dof, driven) = (run.dof, run.dof as usize);
     let rate = last.sampling_hz;
     let points = |x: &[f64]| -> Vec<(f64, f64)> {
         let samples = x.iter().enumerate();
         samples.map(|(k, v)| (k as f64 / rate, *v)).collect()
     };
-    let whole = 0.0..last.force[force].len() as f64 / rate;
+    let whole = 0.0..last.force[driven].len() as f64 / rate;
     let windows = [whole.clone(), close_up(run, whole)];
     let replaced = run.replaced.iter();
     let shaded = replaced.map(|r| (r.start_s, r.start_s + r.samples as f64 / rate));
@@ -40,7 +36,7 @@ pub(crate) fn processing_figure(
     for (levels, signals) in run.levels.iter().zip(stages) {
         let signal = Series {
             name: levels.stage.clone(),
-            points: points(&signals.force[force]),
+            points: points(&signals.force[driven]),
             ink: force_ink,
         };
         let axes = [Axis::new(""), Axis::new(force_label(dof))];
@@ -48,12 +44,12 @@ pub(crate) fn processing_figure(
         left.title = Some(stage_title(levels, dof));
         panels.extend([left, right]);
     }
-    let motion_name = format!("{} motion", run.dof.name());
-    let unit = if run.dof == Dof::Torsion { "rad" } else { "m" };
-    let label = format!("{} ({unit})", run.dof.symbol());
+    let motion_name = format!("{} motion", dof.name());
+    let unit = if dof == Dof::Torsion { "rad" } else { "m" };
+    let label = format!("{} ({unit})", dof.symbol());
     let signal = Series {
         name: "motion".into(),
-        points: points(&last.motion[motion]),
+        points: points(&last.motion[driven]),
         ink: motion_ink,
     };
     let axes = [Axis::new("t (s)"), Axis::new(label)];

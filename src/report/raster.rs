@@ -20,11 +20,9 @@ impl Figure {
     /// [`Error::Input`] for a scale that is not in (0, 20]; [`Error::Numerical`] when the picture cannot be drawn.
     pub fn png(&self, scale: f64) -> Result<Vec<u8>> {
         if !(scale > 0.0 && scale <= MAX_SCALE) {
-            return Err(Error::input(
-                "scale of the PNG image",
-                format!("a number above 0 and up to {MAX_SCALE}"),
-                scale.to_string(),
-            ));
+            let expected = format!("a number above 0 and up to {MAX_SCALE}");
+            let (place, found) = ("scale of the PNG image", scale.to_string());
+            return Err(Error::input(place, expected, found));
         }
         let failed = |what: String| Error::Numerical(format!("figure: {what}"));
         let tree =

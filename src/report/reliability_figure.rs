@@ -86,13 +86,9 @@ fn known_speeds(result: &MonteCarloResult) -> Vec<(f64, String, usize)> {
         (speed, text, 2)
     });
     let design = result.design.as_ref().map(|d| {
-        let text = format!(
-            "design speed {} m/s: probability {:.2e} ({:.2e} to {:.2e})",
-            significant(d.speed_m_s),
-            d.probability,
-            d.lower,
-            d.upper
-        );
+        let (speed, part, low, high) = (significant(d.speed_m_s), d.probability, d.lower, d.upper);
+        let text =
+            format!("design speed {speed} m/s: probability {part:.2e} ({low:.2e} to {high:.2e})");
         (d.speed_m_s, text, 1)
     });
     nominal.into_iter().chain(design).collect()

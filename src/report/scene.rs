@@ -189,10 +189,8 @@ impl Scene {
 
     fn write(&mut self, at: Px, content: &str, size: u32, attributes: &str) {
         // what XML cannot hold becomes a space
-        let plain: String = content
-            .chars()
-            .map(|c| if c.is_control() { ' ' } else { c })
-            .collect();
+        let shown = |c: char| if c.is_control() { ' ' } else { c };
+        let plain: String = content.chars().map(shown).collect();
         let content = subscripted(&escape(&plain));
         let (x, y) = (rounded(at.x), rounded(at.y));
         self.add(format_args!(
@@ -203,10 +201,9 @@ impl Scene {
     /// A marker; filled ones get a white rim that keeps neighbours apart.
     pub(super) fn marker(&mut self, at: Px, marker: Ink) {
         let r = marker.size;
-        let (fill, rim) = if marker.hollow {
-            (WHITE, Ink::solid(marker.colour, 1.6))
-        } else {
-            (marker.colour, Ink::solid(WHITE, 0.8))
+        let (fill, rim) = match marker.hollow {
+            true => (WHITE, Ink::solid(marker.colour, 1.6)),
+            false => (marker.colour, Ink::solid(WHITE, 0.8)),
         };
         let around = |corners: &[[f64; 2]]| -> Vec<Px> {
             let corner = |c: &[f64; 2]| at + Px::new(c[0] * r, c[1] * r);
@@ -300,13 +297,9 @@ fn path(points: &[Px]) -> String {
 }
 
 fn sides(area: Area) -> String {
-    format!(
-        " x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-        rounded(area.left),
-        rounded(area.top),
-        rounded(area.right - area.left),
-        rounded(area.bottom - area.top)
-    )
+    let (width, height) = (area.right - area.left, area.bottom - area.top);
+    let [x, y, width, height] = [area.left, area.top, width, height].map(rounded);
+    format!(" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
 /// `F_y` as a symbol with a subscript: a single letter, an underscore and one or two letters that end the word.
@@ -314,9 +307,8 @@ fn subscripted(content: &str) -> String {
     let mut text = String::new();
     let mut rest = content;
     while let Some((before, after)) = rest.split_once('_') {
-        let length = after
-            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
-            .unwrap_or(after.len());
+        let length = after.find(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let length = length.unwrap_or(after.len());
         let (word, remaining) = after.split_at(length);
         let mut backwards = before.chars().rev();
         let symbol = backwards.next().is_some_and(char::is_alphabetic)

@@ -52,10 +52,10 @@ pub(crate) struct StudyPage {
     pub(crate) generator: String,
     pub(crate) of: ReportBlock,
     pub(crate) verdict: Verdict,
-    pub(crate) card: Vec<(String, String)>,
+    pub(crate) card: Vec<(&'static str, String)>,
     /// Which of the models the answer is of, and why.
     pub(crate) whose: String,
-    pub(crate) asked: Vec<(String, String)>,
+    pub(crate) asked: Vec<(&'static str, String)>,
     pub(crate) onsets: Vec<Vec<String>>,
     pub(crate) comparisons: Vec<String>,
     /// Further tables of the answer.

@@ -37,11 +37,8 @@ const DASHES: [Option<&str>; 7] = [
 /// [`Error::Input`] when more are wanted than can be told apart.
 pub(super) fn colour(place: &str, i: usize) -> Result<&'static str> {
     COLOURS.get(i).copied().ok_or_else(|| {
-        Error::input(
-            place,
-            format!("at most {} to compare in one figure", COLOURS.len()),
-            format!("at least {}", i + 1),
-        )
+        let expected = format!("at most {} to compare in one figure", COLOURS.len());
+        Error::input(place, expected, format!("at least {}", i + 1))
     })
 }
 

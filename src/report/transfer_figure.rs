@@ -33,15 +33,13 @@ pub(crate) fn transfer_figure(title: &str, plots: &[TransferPlot]) -> Result<Fig
     let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.model));
     let ink = |i: usize| Ink::nth(PLACE, i);
     let mut panels = Vec::with_capacity(2 * plots.len());
-    for plot in plots {
-        for phase in [false, true] {
-            let mut panel = reference_panel(plot, phase);
-            for curve in &plot.models {
-                let points = points(curve, phase);
-                panel.add(&curve.model, points, ink(index_of(&labels, &curve.model))?);
-            }
-            panels.push(panel);
+    for (plot, phase) in plots.iter().flat_map(|p| [(p, false), (p, true)]) {
+        let mut panel = reference_panel(plot, phase);
+        for curve in &plot.models {
+            let ink = ink(index_of(&labels, &curve.model))?;
+            panel.add(&curve.model, points(curve, phase), ink);
         }
+        panels.push(panel);
     }
     let mut legend = Vec::new();
     if let Some(plot) = plots.first() {
@@ -59,10 +57,9 @@ pub(crate) fn transfer_figure(title: &str, plots: &[TransferPlot]) -> Result<Fig
 
 /// A panel of magnitudes or phases with the reference and the band around it.
 fn reference_panel(plot: &TransferPlot, phase: bool) -> Panel {
-    let y = if phase {
-        "Phase (°)"
-    } else {
-        "Magnitude (–)"
+    let y = match phase {
+        true => "Phase (°)",
+        false => "Magnitude (–)",
     };
     let mut panel = Panel::new(Axis::new("Frequency (Hz)").tight(), Axis::new(y));
     panel.title = Some(plot.name.clone());

@@ -252,9 +252,8 @@ fn groups(
     let mut groups = Vec::new();
     for (section, block) in file.sections.iter().enumerate() {
         let (first, last) = ends(block, modes, section)?;
-        let winds = modes.nodes[first..=last]
-            .iter()
-            .map(|n| file.wind.factor(n.along_m));
+        let winds = modes.nodes[first..=last].iter();
+        let winds = winds.map(|n| file.wind.factor(n.along_m));
         let (step, by_wind) = by_wind(&winds.collect::<Vec<_>>(), first);
         if let Some(step) = step {
             notes.push(format!(
@@ -311,10 +310,8 @@ fn ends(block: &BridgeSectionBlock, modes: &BridgeModes, section: usize) -> Resu
         None => Ok(otherwise),
         Some(name) => modes.index_of(format!("section[{section}].{key}"), name),
     };
-    let ends = (
-        place("from", &block.from, 0)?,
-        place("to", &block.to, last)?,
-    );
+    let from = place("from", &block.from, 0)?;
+    let to = place("to", &block.to, last)?;
     // whichever way the wind numbers them
-    Ok((ends.0.min(ends.1), ends.0.max(ends.1)))
+    Ok((from.min(to), from.max(to)))
 }

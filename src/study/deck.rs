@@ -95,13 +95,11 @@ impl Deck {
             let deck = embedded::deck_where_files_are_taken(name);
             Some(deck.map_err(|e| e.at("deck.source"))?)
         };
-        ensure(
-            is_file || study.deck.convention.is_empty(),
-            "deck.convention",
-            "a table in a file (.csv, .xlsx) as deck.source",
-            format_args!("`{name}`, whose convention is known"),
-        )?;
         let of = &study.deck;
+        let found = format_args!("`{name}`, whose convention is known");
+        let expected = "a table in a file (.csv, .xlsx) as deck.source";
+        let known = is_file || of.convention.is_empty();
+        ensure(known, "deck.convention", expected, found)?;
         let states = of.width_m.is_some() || of.angle_deg.is_some() || of.missing.is_some();
         let expected =
             "`width_m`, `angle_deg` and `missing` for a table in a file (.csv, .xlsx) only";
@@ -236,12 +234,10 @@ pub(super) fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize
     };
     let right =
         |(i, group): (usize, &usize)| (1..=count).contains(group) && !groups[..i].contains(group);
-    ensure(
-        !groups.is_empty() && groups.iter().enumerate().all(right),
-        "speed_groups",
-        format_args!("numbers from 1 to {count}, each once"),
-        format_args!("{groups:?}"),
-    )?;
+    let right = !groups.is_empty() && groups.iter().enumerate().all(right);
+    let (place, found) = ("speed_groups", format_args!("{groups:?}"));
+    let expected = format_args!("numbers from 1 to {count}, each once");
+    ensure(right, place, expected, found)?;
     Ok(groups.iter().map(|group| group - 1).collect())
 }
 

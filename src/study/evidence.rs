@@ -41,7 +41,7 @@ pub(crate) fn section_evidence(
     let of_own = own.and_then(|m| of_model(study, results, m));
     let table = deck.own_model_name();
     let flutter = of_own.into_iter();
-    let flutter = flutter.chain(of_deck(study, deck, results, &table));
+    let flutter = flutter.chain(of_deck(study, deck, results));
     let mut growth = results.growth.iter();
     let growth = growth.find(|g| Some(g.model.as_str()) == name);
     let of_answer = |model: &str| Some(model) == name || model == table;
@@ -137,13 +137,9 @@ fn reach(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Result<
     Ok(Reach::new(range, from, curves, study.section.width_m))
 }
 
-fn of_deck(
-    study: &Study,
-    deck: &Deck,
-    results: &FlutterStudy,
-    name: &str,
-) -> Option<FlutterReading> {
+fn of_deck(study: &Study, deck: &Deck, results: &FlutterStudy) -> Option<FlutterReading> {
     let (table, tested) = deck.model().ok()?;
+    let name = &deck.own_model_name();
     Some(FlutterReading {
         forces: forces(name, name),
         search: results.search_of(name, OnsetMethod::Determinant)?,

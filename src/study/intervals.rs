@@ -113,10 +113,8 @@ fn state_each<'a>(
         )
     };
     for onset in onsets.filter(by_roots) {
-        let own = models
-            .iter()
-            .zip(known)
-            .find(|(m, _)| m.name == onset.at.model);
+        let mut all = models.iter().zip(known);
+        let own = all.find(|(m, _)| m.name == onset.at.model);
         if let Some((model, known)) = own {
             onset.interval = interval_of(&structure, model, known, onset);
             let warning = known.as_ref().ok();

@@ -254,12 +254,8 @@ impl Deviation {
     /// The deviation in words.
     pub(crate) fn explain(&self) -> String {
         let side = if self.percent < 0.0 { "below" } else { "above" };
-        let mut text = format!(
-            "{}: {:.1} % {side} {}",
-            self.model,
-            self.percent.abs(),
-            self.reference
-        );
+        let (percent, reference) = (self.percent.abs(), &self.reference);
+        let mut text = format!("{}: {percent:.1} % {side} {reference}", self.model);
         if let (Some(fit), Some(held)) = (self.from_fit_percent, self.from_held_force_percent) {
             text.push_str(&format!(
                 "; {fit:+.1} % come from the filters, which have no feed-through and fit the lift due to heave poorly \

@@ -58,10 +58,8 @@ fn default_study(found: &IdentifiedDerivatives) -> Result<Study> {
     let groups = found.speed_groups();
     let is_whole = |group: &Vec<f64>| {
         found.dofs.iter().all(|dof| {
-            let mut of_motion = found
-                .estimates
-                .iter()
-                .filter(|e| e.derivative.motion() == *dof);
+            let estimates = found.estimates.iter();
+            let mut of_motion = estimates.filter(|e| e.derivative.motion() == *dof);
             of_motion.any(|e| group.contains(&e.mean_speed_m_s))
         })
     };

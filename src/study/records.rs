@@ -87,13 +87,10 @@ impl RecordSet {
                 }
             }
         }
-        ensure(
-            !needed || !paths.is_empty(),
-            "",
-            "records (run `aerodeck tunnel` first, or name your own under `deck.records`)",
-            "none",
-        )
-        .map_err(|e| e.in_file(folder))?;
+        let expected =
+            "records (run `aerodeck tunnel` first, or name your own under `deck.records`)";
+        let enough = !needed || !paths.is_empty();
+        ensure(enough, "", expected, "none").map_err(|e| e.in_file(folder))?;
         paths.sort();
         let own = deck.table_name().unwrap_or(FLAT_PLATE);
         for path in &paths {
@@ -170,11 +167,7 @@ impl RecordSet {
             let speed = record.header().mean_speed_m_s;
             chosen.contains(&group_of(&self.groups_m_s, speed))
         };
-        Ok(self
-            .records
-            .iter()
-            .map(AsRef::as_ref)
-            .filter(inside)
-            .collect())
+        let records = self.records.iter().map(AsRef::as_ref);
+        Ok(records.filter(inside).collect())
     }
 }

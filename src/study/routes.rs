@@ -326,9 +326,8 @@ impl Forces<'_> {
         }
         let onset = search.onset();
         let speed_max = self.speeds.searched_to_m_s;
-        let mode = onset
-            .map(|o| classify(self.structure, self.model, o, self.range(), speed_max))
-            .transpose()?;
+        let mode = onset.map(|o| classify(self.structure, self.model, o, self.range(), speed_max));
+        let mode = mode.transpose()?;
         let mut warnings = match &search {
             FlutterSearch::Onset(onset) => onset.warnings.clone(),
             FlutterSearch::UnstableAtOrBelow(start) => start.warnings.clone(),

@@ -110,13 +110,9 @@ impl FlutterBlock {
             let expected = format_args!("a speed below speed_max_m_s, {high}");
             ensure(low < high, format!("{place}.speed_min_m_s"), expected, low)?;
         }
-        ensure(
-            (2..=MOST_SPEEDS).contains(&self.speeds),
-            format!("{place}.speeds"),
-            format_args!("a number from 2 to {MOST_SPEEDS}"),
-            self.speeds,
-        )?;
-        Ok(())
+        let expected = format_args!("a number from 2 to {MOST_SPEEDS}");
+        let several = (2..=MOST_SPEEDS).contains(&self.speeds);
+        ensure(several, format!("{place}.speeds"), expected, self.speeds)
     }
 }
 
@@ -128,15 +124,13 @@ impl SpeedRange {
 
     /// The range in words.
     pub(crate) fn explain(&self) -> String {
-        let why = if self.from_section {
-            ", from the section's frequencies, width and mass"
-        } else {
-            ""
+        let why = match self.from_section {
+            true => ", from the section's frequencies, width and mass",
+            false => "",
         };
+        let (low, high) = ((1e3 * self.speed_min_m_s).round() / 1e3, self.speed_max_m_s);
         format!(
-            "{} to {} m/s in {}{why}",
-            (1e3 * self.speed_min_m_s).round() / 1e3,
-            self.speed_max_m_s,
+            "{low} to {high} m/s in {}{why}",
             counted(self.speeds, "step")
         )
     }

@@ -252,11 +252,8 @@ impl WindStudy {
         }
         let model = self.trained_model()?;
         model.map(|m| m.section).ok_or_else(|| {
-            Error::input(
-                "section",
-                "a [section], or a trained model that has one",
-                "neither",
-            )
+            let expected = "a [section], or a trained model that has one";
+            Error::input("section", expected, "neither")
         })
     }
 
@@ -315,12 +312,9 @@ impl CoefficientsBlock {
 
     /// Refuses arms from two sources; `place` is the key of the block.
     pub(in crate::study) fn validate(&self, place: &str) -> Result<()> {
-        ensure(
-            self.arms.is_none() || self.arms_from.is_none(),
-            format!("{place}.arms_from"),
-            "`arms` or `arms_from`",
-            "both",
-        )?;
+        let one = self.arms.is_none() || self.arms_from.is_none();
+        let (key, expected) = (format!("{place}.arms_from"), "`arms` or `arms_from`");
+        ensure(one, key, expected, "both")?;
         self.arms.unwrap_or_default().validate(&format!("{place}."))
     }
 }

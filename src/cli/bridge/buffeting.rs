@@ -38,9 +38,8 @@ pub(crate) struct BridgeBuffetingArgs {
 /// Runs the command.
 pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
-    let block = study
-        .buffeting_block()
-        .map_err(|e| e.in_file(&args.bridge.bridge))?;
+    let block = study.buffeting_block();
+    let block = block.map_err(|e| e.in_file(&args.bridge.bridge))?;
     if let Some(path) = &args.turbulence {
         return by_file(args, &study, &block, path);
     }
@@ -61,13 +60,8 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
             _ => format!("bridge_spectra_{speed}.csv"),
         };
         out.write(name, spectra_csv(results))?;
-        let _ = writeln!(
-            text,
-            "{} at {speed} m/s\n{}\n{}",
-            study.file.name,
-            forces(results),
-            table(results)
-        );
+        let (bridge, forces, table) = (&study.file.name, forces(results), table(results));
+        text += &format!("{bridge} at {speed} m/s\n{forces}\n{table}\n");
     }
     text.extend(unstable.iter().map(|why| format!("no answer: {why}\n")));
     if args.field {
@@ -171,9 +165,8 @@ fn by_file(
     let odd = field.odd_speed(speed).map_err(|e| e.in_file(path))?;
     let of_field = study.findings_of(&field, Some(speed));
     warn(path, &[Vec::from_iter(odd), sentences(&of_field)].concat());
-    let found = study
-        .buffeting_by(block, speed, &field)
-        .map_err(|e| e.in_file(path))?;
+    let found = study.buffeting_by(block, speed, &field);
+    let found = found.map_err(|e| e.in_file(path))?;
     let of_nodes = rows(">RMS | >peak f.", &found.nodes, |n, i| {
         let (rms, peak) = (found.rms[n][i], found.peak_factor[n][i]);
         vec![format!("{rms:.5e}"), of_motion(rms, format!("{peak:.3}"))]

@@ -70,12 +70,8 @@ pub(super) fn forces(results: &BridgeBuffeting) -> String {
         );
         text.extend(time.too_short.iter().map(|why| format!("  {why}\n")));
     }
-    text.extend(
-        results
-            .no_time
-            .iter()
-            .map(|why| format!("no time domain: {why}\n")),
-    );
+    let no_time = results.no_time.iter();
+    text.extend(no_time.map(|why| format!("no time domain: {why}\n")));
     let parts = results.frequency.part_in_tested_range.iter().flatten();
     let least = parts.flatten().copied().reduce(f64::min);
     if let Some(percent) = least.map(|least| 100.0 * least) {

@@ -39,9 +39,8 @@ pub(crate) struct BridgeConvertArgs {
 /// Refuses to leave out the nodes that a doubt is seen by: what is written is judged as what was read.
 fn keeps_doubts(whole: &[Finding], thinned: &[Finding]) -> Result<()> {
     let key = |f: &Finding| (f.severity, f.kind, f.place.clone());
-    let mut doubts = whole
-        .iter()
-        .filter(|f| f.severity == FindingSeverity::Doubt);
+    let doubts = whole.iter();
+    let mut doubts = doubts.filter(|f| f.severity == FindingSeverity::Doubt);
     let Some(lost) = doubts.find(|d| !thinned.iter().any(|f| key(f) == key(d))) else {
         return Ok(());
     };
@@ -133,8 +132,6 @@ pub(super) fn run(args: &BridgeConvertArgs) -> Result<Answer> {
         counted(nodes, "node"),
         counted(count, "mode")
     );
-    Answer::new(
-        text,
-        &serde_json::json!({ "file": args.output, "nodes": nodes, "modes": count }),
-    )
+    let value = serde_json::json!({ "file": args.output, "nodes": nodes, "modes": count });
+    Answer::new(text, &value)
 }

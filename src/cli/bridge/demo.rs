@@ -12,7 +12,7 @@ use crate::cli::vocabulary::{
 };
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::package;
-use crate::study::bridge::{BridgeExportOptions, BridgeFlutter, demo_bridge_text};
+use crate::study::bridge::{BridgeExportOptions, demo_bridge_text};
 use crate::study::{KnownUncertainty, RecordSet, StageFailure, demo_study_text};
 use std::path::Path;
 
@@ -34,7 +34,15 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
-    let fmu = || packed(&study, &results, &verdict, &mut out);
+    let fmu = || {
+        let (model, mut export) = study.export(&BridgeExportOptions {
+            onset_interval: results.interval(),
+            ..BridgeExportOptions::default()
+        })?;
+        export.verdict = Some(verdict);
+        export.label = Label::default().dated()?;
+        out.write(BRIDGE_FMU, package(&model, &Runtime::available()?, export)?)
+    };
     if let Err(e) = progress.during("packing the FMU", fmu) {
         failed.push(format!("FMU: {e}"));
     }
@@ -52,22 +60,6 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     Ok(Answer::new(text, &summary)?
         .passed_if(summary.failed.is_empty())
         .with_outcome_of(&verdict))
-}
-
-/// The FMU of the bridge.
-fn packed(
-    study: &BridgeStudy,
-    results: &BridgeFlutter,
-    verdict: &Verdict,
-    out: &mut OutputDir,
-) -> Result<()> {
-    let (model, mut export) = study.export(&BridgeExportOptions {
-        onset_interval: results.interval(),
-        ..BridgeExportOptions::default()
-    })?;
-    export.verdict = Some(verdict.clone());
-    export.label = Label::default().dated()?;
-    out.write(BRIDGE_FMU, package(&model, &Runtime::available()?, export)?)
 }
 
 /// The records of the virtual tunnel and the model trained on them.

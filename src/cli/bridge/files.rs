@@ -52,9 +52,8 @@ impl BridgeArgs {
 
 /// The bridge of a file, with what a reader should know of it on the terminal.
 pub(crate) fn read(file: &Path, progress: &Progress) -> Result<BridgeStudy> {
-    let study = progress.during("reading the bridge", || {
-        BridgeFile::read(file).and_then(BridgeStudy::new)
-    })?;
+    let work = || BridgeFile::read(file).and_then(BridgeStudy::new);
+    let study = progress.during("reading the bridge", work)?;
     warn(file, &study.warnings());
     Ok(study)
 }

@@ -71,7 +71,12 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
-    let scattered = scattered(scatter, &study, &results, progress).unwrap_or_else(|e| {
+    let scattered = scatter.zip(results.onset()).map(|(scatter, onset)| {
+        progress.counting("samples of the bridge", |on_done| {
+            study.scattered_onset(onset, &scatter, on_done)
+        })
+    });
+    let scattered = scattered.transpose().unwrap_or_else(|e| {
         failed.push(format!("scatter: {e}"));
         None
     });
@@ -144,21 +149,6 @@ impl BridgeFlutterArgs {
     }
 }
 
-fn scattered(
-    scatter: Option<Scatter>,
-    study: &BridgeStudy,
-    results: &BridgeFlutter,
-    progress: &Progress,
-) -> Result<Option<ScatteredOnset>> {
-    let (Some(scatter), Some(onset)) = (scatter, results.onset()) else {
-        return Ok(None);
-    };
-    let found = progress.counting("samples of the bridge", |on_done| {
-        study.scattered_onset(onset, &scatter, on_done)
-    });
-    found.map(Some)
-}
-
 fn scatter_line(of: &ScatteredOnset) -> String {
     let (samples, onsets) = (of.scatter.samples, &of.onsets);
     let (mean, deviation) = (onsets.mean_m_s, onsets.standard_deviation_m_s);
@@ -176,8 +166,7 @@ pub(super) fn computed(
 ) -> Result<(BridgeFlutter, Vec<String>)> {
     let results = progress.during("flutter of the bridge", || bridge_flutter(study))?;
     let mut failed = results.failed.clone();
-    let verdict = Verdict::judge(&study.evidence(&results, &failed));
-    if let Err(e) = staged(study, &results, &verdict, out) {
+    if let Err(e) = staged(study, &results, out) {
         failed.push(format!("figures: {e}"));
     }
     Ok((results, failed))
@@ -206,18 +195,13 @@ pub(super) fn renew(folder: &Path, text: &str) -> Result<()> {
 }
 
 /// Stages figures and tables.
-fn staged(
-    study: &BridgeStudy,
-    results: &BridgeFlutter,
-    verdict: &Verdict,
-    out: &mut OutputDir,
-) -> Result<()> {
+fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> Result<()> {
+    let verdict = &Verdict::judge(&study.evidence(results, &results.failed));
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
     if results.curves.branches.iter().any(|b| !b.points.is_empty()) {
-        figures::write(FLUTTER_FIGURE, out, || {
-            bridge_curves_figure(results, verdict, &title)
-        })?;
+        let draw = || bridge_curves_figure(results, verdict, &title);
+        figures::write(FLUTTER_FIGURE, out, draw)?;
         let title = format!("{}: eigenvalues as the wind rises", study.file.name);
         figures::write(ROOTS_FIGURE, out, || bridge_roots_figure(results, &title))?;
         let curves = std::slice::from_ref(&results.curves);
@@ -225,18 +209,16 @@ fn staged(
     }
     if let Some(panels) = panels(results) {
         let title = format!("{}: the mode that flutters", study.file.name);
-        figures::write(RESPONSE_FIGURE, out, || {
-            scaled_history_figure(&title, &panels, "Time t (s)", 2)
-        })?;
+        let draw = || scaled_history_figure(&title, &panels, "Time t (s)", 2);
+        figures::write(RESPONSE_FIGURE, out, draw)?;
     }
     for number in 0..study.sections.len() {
         write_derivatives(study, number, out)?;
     }
     if let Some(motion) = results.answers.last().and_then(|a| a.motion.as_ref()) {
         let title = format!("{}: motion at flutter", study.file.name);
-        figures::write(MOTION_FIGURE, out, || {
-            flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title)
-        })?;
+        let draw = || flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title);
+        figures::write(MOTION_FIGURE, out, draw)?;
         out.write("flutter_motion.csv", motion_csv(motion))?;
         out.write("flutter_animation.csv", animation_csv(motion))?;
     }

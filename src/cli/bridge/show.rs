@@ -22,13 +22,12 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
     );
     figures::write("modes", &mut out, || modes_figure(bridge, &title))?;
     let length: f64 = bridge.nodes.iter().map(|n| n.length_m).sum();
-    let mut text = format!(
-        "{}: {} over {length:.1} m, {}, {} of strips\n\n",
-        study.file.name,
+    let (nodes, modes) = (
         counted(bridge.nodes.len(), "node"),
         counted(bridge.modes.len(), "mode"),
-        counted(bridge.groups.len(), "group"),
     );
+    let (name, groups) = (&study.file.name, counted(bridge.groups.len(), "group"));
+    let mut text = format!("{name}: {nodes} over {length:.1} m, {modes}, {groups} of strips\n\n");
     let mut table = TextTable::new(">mode | >f Hz | >mass kg | >ζ % | main motion");
     for m in &bridge.modes {
         table.row([
@@ -41,15 +40,11 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
     }
     text.push_str(&table.text());
     for d in &bridge.dampers.masses {
-        let _ = writeln!(
-            text,
-            "{}: {} kg, {} Hz, ζ {} %, {}, {} m downwind of the axis",
-            d.name,
-            d.mass_kg,
-            d.frequency_hz,
-            100.0 * d.damping_ratio,
-            d.at.motion.name(),
-            d.at.offset_m
+        let (name, mass, hertz, percent) =
+            (&d.name, d.mass_kg, d.frequency_hz, 100.0 * d.damping_ratio);
+        let (motion, offset) = (d.at.motion.name(), d.at.offset_m);
+        text += &format!(
+            "{name}: {mass} kg, {hertz} Hz, ζ {percent} %, {motion}, {offset} m downwind of the axis\n"
         );
     }
     for l in &bridge.dampers.links {
@@ -59,12 +54,8 @@ pub(super) fn run(args: &BridgeArgs, progress: &Progress) -> Result<Answer> {
     let similarities = study.similarities();
     text.push_str("\nSimilarity of vertical and torsional modes, (∫φ_y φ_θ)²/(∫φ_y² ∫φ_θ²); a section study assumes 1:\n");
     for s in similarities.iter().take(PAIRS) {
-        let (vertical, torsional) = (s.vertical_mode, s.torsional_mode);
-        let _ = writeln!(
-            text,
-            "  modes {vertical:>3} and {torsional:>3}: {:.4}",
-            s.similarity
-        );
+        let (y, theta, similarity) = (s.vertical_mode, s.torsional_mode, s.similarity);
+        text += &format!("  modes {y:>3} and {theta:>3}: {similarity:.4}\n");
     }
     let mode = |m: &BridgeMode| {
         serde_json::json!({

@@ -202,10 +202,8 @@ pub(super) fn named(file: &BridgeFile) -> Result<Vec<PathBuf>> {
         all.push(file.modes.path.clone());
     }
     for section in &file.sections {
-        let table = section
-            .derivatives
-            .iter()
-            .filter(|name| is_table_file(name));
+        let table = section.derivatives.iter();
+        let table = table.filter(|name| is_table_file(name));
         all.extend(table.map(|name| PathBuf::from(file_and_sheet(name.trim()).0)));
         if let Some(model) = &section.model {
             all.push(model.clone());

@@ -45,11 +45,8 @@ pub(super) fn text(
         let named = named.join(", ");
         let _ = writeln!(text, "Modes     of the flutter, by kinetic energy: {named}");
     }
-    text.extend(
-        beside_the_onset(results)
-            .into_iter()
-            .map(|sentence| format!("{sentence}\n")),
-    );
+    let sentences = beside_the_onset(results).into_iter();
+    text.extend(sentences.map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -57,14 +54,12 @@ pub(super) fn text(
 fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> String {
     let bridge = &study.by_model;
     let mut text = headline::text(&study.file.name, verdict, &[]);
-    let _ = writeln!(
-        text,
-        "Bridge    {}, {}, {} of strips; K refers to B = {} m",
+    let (nodes, modes) = (
         counted(bridge.nodes.len(), "node"),
         counted(bridge.modes.len(), "mode"),
-        counted(bridge.groups.len(), "group"),
-        bridge.width_m()
     );
+    let (groups, width) = (counted(bridge.groups.len(), "group"), bridge.width_m());
+    text += &format!("Bridge    {nodes}, {modes}, {groups} of strips; K refers to B = {width} m\n");
     text.extend(results.answers.iter().map(one));
     if !results.left_out.is_empty() {
         text.push_str("Onset with fewer modes (by share of the kinetic energy at the onset)\n");
@@ -76,16 +71,10 @@ fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> Stri
         let change = |(v, full): (f64, f64)| format!(" ({:+.2} %)", 100.0 * (v / full - 1.0));
         let change = left.onset_m_s.zip(full).map(change).unwrap_or_default();
         let (modes, percent) = (left.modes.len(), 100.0 * left.below_share);
-        let _ = writeln!(
-            text,
-            "  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}"
-        );
+        text += &format!("  {modes:>3} modes from {percent:>7.3} % on: {onset}{change}\n");
     }
-    text.extend(
-        beside_the_onset(results)
-            .into_iter()
-            .map(|sentence| format!("{sentence}\n")),
-    );
+    let sentences = beside_the_onset(results).into_iter();
+    text.extend(sentences.map(|sentence| format!("{sentence}\n")));
     text
 }
 
@@ -145,25 +134,20 @@ fn one(answer: &BridgeAnswer) -> String {
                 Some(false) => "OUTSIDE the tested range",
                 None => "no tested range",
             };
-            let _ = writeln!(
-                text,
-                "  V_F {:.3} m/s at {:.4} Hz ({}); V* = V/(fB) {:.3}, K {:.4}, {tested}; {}",
-                o.at.speed_m_s,
-                o.at.frequency_hz,
-                o.at.method.name(),
+            let (speed, hertz, method) = (o.at.speed_m_s, o.at.frequency_hz, o.at.method.name());
+            let (v_star, branch) = (
                 o.at.reduced_velocity.v_star(),
-                o.at.reduced_frequency.full_width(),
-                ModeBranch::in_words(&o.branch)
+                ModeBranch::in_words(&o.branch),
             );
+            let k = o.at.reduced_frequency.full_width();
+            text += &format!("  V_F {speed:.3} m/s at {hertz:.4} Hz ({method}); ");
+            text += &format!("V* = V/(fB) {v_star:.3}, K {k:.4}, {tested}; {branch}\n");
             let _ = writeln!(text, "  {}", interval(&o.interval));
             if let Some(slope) = o.damping_slope_s_m {
                 let _ = writeln!(text, "  damping slope dζ/dV {slope:.5} s/m");
             }
-            text.extend(
-                o.warnings
-                    .iter()
-                    .map(|warning| format!("  warning: {warning}\n")),
-            );
+            let warnings = o.warnings.iter();
+            text.extend(warnings.map(|warning| format!("  warning: {warning}\n")));
         }
         other => {
             let _ = writeln!(text, "  {}", other.explain());
@@ -172,11 +156,9 @@ fn one(answer: &BridgeAnswer) -> String {
     let modes = answer.motion.iter().flat_map(|m| &m.modes);
     for m in modes.filter(|m| m.energy_share >= NAMED_SHARE) {
         let (mode, hertz, percent) = (m.mode, m.frequency_hz, 100.0 * m.energy_share);
-        let _ = writeln!(
-            text,
-            "    mode {mode:>3} ({hertz:.4} Hz) {percent:>5.1} % of the kinetic energy, phase {:>6.1}°",
-            m.phase_deg
-        );
+        text +=
+            &format!("    mode {mode:>3} ({hertz:.4} Hz) {percent:>5.1} % of the kinetic energy, ");
+        text += &format!("phase {:>6.1}°\n", m.phase_deg);
     }
     text
 }

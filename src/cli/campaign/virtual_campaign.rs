@@ -6,7 +6,6 @@ use crate::files::derivatives::named_table;
 use crate::wind_tunnel::campaign::{FileFormat, write_virtual_campaign};
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
 use clap::builder::PossibleValue;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Invent the raw campaign of a known deck: two load cells, gravity, inertia, wind, noise, drift, a spike, lags
@@ -69,21 +68,14 @@ pub(crate) fn run(args: &VirtualCampaignArgs, progress: &Progress) -> Result<Ans
     drop(stage);
     let mut text = format!("{}: {}\n", made.raw.section, made.raw.source);
     for run in &made.raw.runs {
-        let _ = writeln!(
-            text,
-            "  {}: {:.2} m/s, {} samples at {} Hz in wind and in still air",
-            run.name,
-            run.mean_speed_m_s,
-            run.in_wind.sample_count(),
-            run.in_wind.sampling_hz
+        let (name, speed) = (&run.name, run.mean_speed_m_s);
+        let (count, rate) = (run.in_wind.sample_count(), run.in_wind.sampling_hz);
+        text += &format!(
+            "  {name}: {speed:.2} m/s, {count} samples at {rate} Hz in wind and in still air\n"
         );
     }
-    text.extend(
-        plan.tunnel
-            .findings()
-            .into_iter()
-            .map(|finding| format!("  note: {finding}\n")),
-    );
+    let findings = plan.tunnel.findings().into_iter();
+    text.extend(findings.map(|finding| format!("  note: {finding}\n")));
     let value = serde_json::json!({
         "section": made.raw.section,
         "runs": made.disturbances,

@@ -8,7 +8,6 @@ use crate::comparison::forces::{
 };
 use crate::identification::DiscreteFit;
 use crate::report::metrics_figure;
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 /// Arguments of both comparisons.
@@ -139,13 +138,9 @@ pub(super) fn metrics_table(summaries: &[ScoreSummary], name: fn(&ScoreSummary) 
 
 /// The thesis's sentences and what is found.
 pub(super) fn beside_the_thesis(statements: &[Statement]) -> String {
-    let mut text = String::new();
-    for s in statements {
-        let _ = writeln!(
-            text,
-            "thesis {}: {}\n      here: {}",
-            s.section, s.thesis, s.here
-        );
-    }
-    text
+    let said = |s: &Statement| {
+        let (section, thesis, here) = (s.section, s.thesis, &s.here);
+        format!("thesis {section}: {thesis}\n      here: {here}\n")
+    };
+    statements.iter().map(said).collect()
 }

@@ -6,7 +6,6 @@ use crate::cli::vocabulary::{Answer, Figure, OutputDir, PageSection, Progress, R
 use crate::comparison::forces::{
     CompareOptions, DecksComparison, Score, compare_decks, score_table,
 };
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Runs the command, whose results stand in the folder `left_in`.
@@ -30,9 +29,8 @@ fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(S
             (true, "other speed", "_held_out"),
         ] {
             let scores = results.scores.iter();
-            let chosen: Vec<_> = scores
-                .filter(|s| s.case.motion == motion && s.case.held_out == held_out)
-                .collect();
+            let chosen = scores.filter(|s| s.case.motion == motion && s.case.held_out == held_out);
+            let chosen: Vec<_> = chosen.collect();
             if chosen.is_empty() {
                 continue;
             }
@@ -85,14 +83,10 @@ fn text(results: &DecksComparison) -> String {
     let mut text = String::from("Predicted against measured forces of several girders\n\n");
     for deck in &results.decks {
         let speeds: Vec<String> = deck.speeds_m_s.iter().map(|v| format!("{v:.2}")).collect();
-        let _ = writeln!(
-            text,
-            "{:<11} B {:.4} m, tested at {} m/s, model of {} at {:.2} m/s",
-            deck.deck,
-            deck.width_m,
-            speeds.join(" and "),
-            deck.trained_on.0,
-            deck.trained_on.1
+        let (name, width, speeds) = (&deck.deck, deck.width_m, speeds.join(" and "));
+        let (model, speed) = &deck.trained_on;
+        text += &format!(
+            "{name:<11} B {width:.4} m, tested at {speeds} m/s, model of {model} at {speed:.2} m/s\n"
         );
     }
     text.push_str(

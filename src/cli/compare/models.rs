@@ -182,10 +182,7 @@ fn text(results: &ModelsComparison) -> String {
         };
         let coefficients = counted(model.coefficients, "coefficient");
         let (name, method) = (&model.name, &model.method);
-        let _ = writeln!(
-            text,
-            "{name}: {method}; {coefficients} a transfer function{poles}"
-        );
+        text += &format!("{name}: {method}; {coefficients} a transfer function{poles}\n");
     }
     text.push_str(
         "\nFrequency domain, bands of the thesis (±15 %, ±5°) around the measured derivatives\n",
@@ -213,19 +210,16 @@ fn transfer_table(results: &ModelsComparison) -> String {
         for model in &entry.models {
             for (point, off) in entry.points.iter().zip(&model.points) {
                 let (magnitude, phase) = (in_magnitude_band(off.0), in_phase_band(off.1));
-                let _ = writeln!(
-                    text,
-                    "{},{},{:.4},{:.5},{:.6},{:.3},{},{:.3},{:.3},{magnitude},{phase}",
-                    entry.force.name(),
-                    entry.motion.name(),
+                let (force, motion) = (entry.force.name(), entry.motion.name());
+                let (hertz, k, size, angle) = (
                     point.frequency_hz,
                     point.k,
                     point.magnitude,
                     point.phase_deg,
-                    csv_cell(&model.model),
-                    off.0,
-                    off.1
                 );
+                text += &format!("{force},{motion},{hertz:.4},{k:.5},{size:.6},{angle:.3},");
+                let (model, (size, angle)) = (csv_cell(&model.model), off);
+                text += &format!("{model},{size:.3},{angle:.3},{magnitude},{phase}\n");
             }
         }
     }

@@ -161,10 +161,8 @@ fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>
     let warping = magnitude_warped(pair, None);
     let (levelled, normalised) = (wavelet(pair, &levels), wavelet_normalised(pair, &levels));
     let density = probability_density(pair, true);
-    let (steady, coupled) = (
-        stationarity(pair, &surrogates),
-        bicoherence(pair, &coupling),
-    );
+    let steady = stationarity(pair, &surrogates);
+    let coupled = bicoherence(pair, &coupling);
     Ok(vec![
         Line::new("M_phi", "mean delay", phase(pair, &delay))?,
         Line::new("M_p", "largest absolute value", peak(pair))?,
@@ -180,13 +178,13 @@ fn metrics(pair: &SignalPair<'_>, args: &CompareSignalsArgs) -> Result<Vec<Line>
 }
 
 fn text(args: &CompareSignalsArgs, pair: &SignalPair<'_>, lines: &[Line]) -> String {
-    let mut text = format!(
-        "{} against {}: {} samples of {} s; 1 for equal signals\n",
-        args.compared,
-        args.reference,
+    let (compared, reference) = (&args.compared, &args.reference);
+    let samples = format!(
+        "{} samples of {} s",
         pair.sample_count(),
         pair.time_step_s()
     );
+    let mut text = format!("{compared} against {reference}: {samples}; 1 for equal signals\n");
     for line in lines {
         let found = match (&line.problem, line.value) {
             (None, Some(value)) => format!("{value:>8.4}"),

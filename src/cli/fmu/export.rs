@@ -198,12 +198,8 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
         return of_bridge.map_err(|e| in_input(&args.model, &[], e));
     }
     let expected = "--bridge with it: the structure of a section is its mass, spring and damper";
-    ensure(
-        args.kind != ExportKind::Structure,
-        "--kind structure",
-        expected,
-        "a trained model",
-    )?;
+    let other = args.kind != ExportKind::Structure;
+    ensure(other, "--kind structure", expected, "a trained model")?;
     let model = stages::read_model(&args.model)?;
     let coupled = args.kind == ExportKind::Section;
     let search = OnsetSearch::up_to(model.experiment.onset_search_limit_m_s);
@@ -251,19 +247,13 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     let platforms: Vec<_> = runtimes.iter().map(|r| r.platform).collect();
     let headline = verdict.iter().map(|v| headline::text(&model.name, v, &[]));
     let mut text: String = headline.collect();
-    let _ = writeln!(
-        text,
-        "wrote {}: {}{}, {}, for {}",
-        path.display(),
-        match strips {
-            None => String::new(),
-            Some(1) => "forces on one strip of ".to_owned(),
-            Some(n) => format!("forces on {n} strips of "),
-        },
-        model.name,
-        crate::trained_model::Model::kind(&model.model),
-        platforms.join(", ")
-    );
+    let of = match strips {
+        None => String::new(),
+        Some(1) => "forces on one strip of ".to_owned(),
+        Some(n) => format!("forces on {n} strips of "),
+    };
+    let (name, kind, all) = (&model.name, model.model.kind(), platforms.join(", "));
+    text += &format!("wrote {}: {of}{name}, {kind}, for {all}\n", path.display());
     text.push_str(&text::growth(&model.name, &growth));
     if strips.is_some() && verdict.is_some() {
         text.push_str("the verdict is on the section that the model states, not on a structure that takes its forces\n");
@@ -274,8 +264,6 @@ pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
             "motion and forces are those of the reference point: a structure that turns about the axis of this section, a = {axis} m from there, positive downwind, gives y + a·θ and takes M + a·F_y (docs/coupling.md)"
         );
     }
-    Answer::new(
-        text,
-        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict, "findings": findings }),
-    )
+    let value = serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth, "verdict": verdict, "findings": findings });
+    Answer::new(text, &value)
 }

@@ -108,7 +108,7 @@ fn chosen(curves: Vec<PageCurve>, shown: &[String]) -> Vec<PageCurve> {
     all
 }
 
-fn asked(facts: &BridgeSummary, file: &BridgeFile) -> Vec<(String, String)> {
+fn asked(facts: &BridgeSummary, file: &BridgeFile) -> Vec<(&'static str, String)> {
     let damping = match &file.modes.damping_ratio {
         DampingRatios::Same(ratio) => format!("damping ratio {} % each", round(100.0 * ratio)),
         DampingRatios::Each(_) => "damping ratios of their own".to_owned(),
@@ -120,18 +120,15 @@ fn asked(facts: &BridgeSummary, file: &BridgeFile) -> Vec<(String, String)> {
     let (modes, of) = (facts.modes.len(), file.modes.path.display());
     let (highest, speeds) = (file.flutter.speed_max_m_s, file.flutter.speeds);
     let (length, width) = (facts.length_m, facts.width_m);
-    let rows = [
+    let speeds = format!("up to {highest} m/s, {speeds} looked at");
+    vec![
         ("girder", format!("{length:.1} m in {} nodes", facts.nodes)),
         ("modes", format!("{modes} of {of}, {damping}")),
         ("air density ρ", format!("{} kg/m³", file.air_density_kg_m3)),
         ("reduced frequency K", format!("ωB/V with B = {width} m")),
         ("wind", wind),
-        (
-            "wind speeds",
-            format!("up to {highest} m/s, {speeds} looked at"),
-        ),
-    ];
-    rows.map(|(name, value)| (name.to_owned(), value)).into()
+        ("wind speeds", speeds),
+    ]
 }
 
 fn licences(facts: &BridgeSummary) -> String {
@@ -154,10 +151,8 @@ fn taking_part(shares: &[ModeShare]) -> PageSection {
     };
     let text =
         "Shares of the kinetic energy at the onset; phases to the mode with the largest share.";
-    let (title, header) = (
-        "Modes that take part in the flutter",
-        "mode | f in still air, Hz | share % | phase °",
-    );
+    let title = "Modes that take part in the flutter";
+    let header = "mode | f in still air, Hz | share % | phase °";
     PageSection {
         text: vec![text.to_owned()],
         ..PageSection::table(title, header, named.map(row).collect())

@@ -20,7 +20,7 @@ pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
 }
 
 /// The onset in words, line by line.
-pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
+pub(super) fn card(onset: &Onset) -> Vec<(&'static str, String)> {
     let interval = match &onset.interval {
         OnsetInterval::Known(error) => format!(
             // a tenth, since the width of the interval hangs on it where there are few
@@ -42,26 +42,16 @@ pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
             format!("{low_m_s:.2} to {high_m_s:.2} m/s: {of}")
         }
     };
-    [
+    let v_star = format!("{:.3}", onset.at.reduced_velocity.v_star());
+    let (branch, mode) = (ModeBranch::in_words(&onset.branch), onset.mode_in_words());
+    vec![
         ("onset speed V", format!("{:.2} m/s", onset.at.speed_m_s)),
         ("95 % interval", interval),
         ("frequency f", format!("{:.4} Hz", onset.at.frequency_hz)),
-        (
-            "reduced velocity V/(fB)",
-            format!("{:.3}", onset.at.reduced_velocity.v_star()),
-        ),
-        (
-            "motion",
-            format!(
-                "{}; {}",
-                ModeBranch::in_words(&onset.branch),
-                onset.mode_in_words()
-            ),
-        ),
+        ("reduced velocity V/(fB)", v_star),
+        ("motion", format!("{branch}; {mode}")),
         ("tested range", tested(onset.in_tested_range).to_owned()),
     ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .into()
 }
 
 fn tested(inside: Option<bool>) -> &'static str {
@@ -93,9 +83,8 @@ pub(super) fn sentence_row(model: &str, method: &str, answer: String) -> Vec<Str
 
 /// Takes the first figure of derivatives, which the summary shows.
 pub(super) fn first_derivatives(figures: &mut Vec<PageFigure>) -> Option<PageFigure> {
-    let at = figures
-        .iter()
-        .position(|f| f.title.starts_with("Derivatives"));
+    let mut all = figures.iter();
+    let at = all.position(|f| f.title.starts_with("Derivatives"));
     at.map(|at| figures.remove(at))
 }
 

@@ -84,9 +84,8 @@ pub(crate) fn figures(
     let maps = metrics.iter().flat_map(metric_values);
     // a force may have no lag in any cell
     let drawn = maps.filter(|(_, values)| values.iter().any(Option::is_some));
-    let metric_maps: Vec<HeatMap> = drawn
-        .map(|(title, values)| map(selection, title, values))
-        .collect();
+    let metric_maps = drawn.map(|(title, values)| map(selection, title, values));
+    let metric_maps: Vec<HeatMap> = metric_maps.collect();
     let draw = |what: &str, maps: &[HeatMap], columns| {
         heat_map_figure(&format!("{}: {what}", study.name), maps, columns)
     };

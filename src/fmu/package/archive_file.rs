@@ -28,10 +28,8 @@ pub fn write_archive(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
         return refused("a folder to write into", "none").map_err(|e| e.in_file(folder));
     }
     if replace && is_of_another_kind(path) {
-        let (expected, found) = (
-            "no file there yet, or an archive",
-            "a file of another kind, which was left as it is",
-        );
+        let expected = "no file there yet, or an archive";
+        let found = "a file of another kind, which was left as it is";
         return Err(Error::input("archive", expected, found).in_file(path));
     }
     let mut file = tempfile::Builder::new()
@@ -45,12 +43,8 @@ pub fn write_archive(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
         true => file.persist(path).map_err(|e| failed(e.error))?,
         false => file.persist_noclobber(path).map_err(|e| {
             if e.error.kind() == std::io::ErrorKind::AlreadyExists {
-                Error::input(
-                    "archive",
-                    "no file there yet",
-                    "one, which was left as it is",
-                )
-                .in_file(path)
+                let found = "one, which was left as it is";
+                Error::input("archive", "no file there yet", found).in_file(path)
             } else {
                 failed(e.error)
             }

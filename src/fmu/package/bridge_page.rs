@@ -3,7 +3,6 @@
 use super::documentation::{GUSTS_ARE_INPUTS, gust_words, rows, sentences};
 use crate::fmu::vocabulary::{BridgeOptions, Element, Resources, Role, Variable};
 use crate::verdict::Verdict;
-use std::fmt::Write as _;
 
 /// The page.
 pub(super) fn documentation(
@@ -101,14 +100,9 @@ fn variables(resources: &Resources, description: &Element) -> String {
         )
     };
     for row in rows(description, &resources.table, further) {
-        let _ = writeln!(
-            page,
-            "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td></tr>",
-            escaped(row.name),
-            row.kind,
-            row.unit,
-            escaped(row.description)
-        );
+        let (name, meaning) = (escaped(row.name), escaped(row.description));
+        let cells = [format!("<code>{name}</code>"), row.kind, row.unit, meaning];
+        page += &format!("<tr><td>{}</td></tr>\n", cells.join("</td><td>"));
     }
     page + "</table>\n"
 }

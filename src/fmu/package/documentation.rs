@@ -35,6 +35,7 @@ pub(super) fn documentation(
         "3.0" => FmiVersion::Three,
         _ => FmiVersion::Two,
     };
+    let filters = resources.models().map(|m| m.model.realize().states());
     let page = DocumentationPage {
         model,
         name: resources.words(|m| &m.name),
@@ -44,11 +45,7 @@ pub(super) fn documentation(
         has_arrays: version == FmiVersion::Three,
         guid: resources.guid.to_string(),
         version: env!("CARGO_PKG_VERSION"),
-        filters: resources
-            .models()
-            .map(|m| m.model.realize().states())
-            .max()
-            .unwrap_or(0),
+        filters: filters.max().unwrap_or(0),
         lateral: resources.models().any(|m| m.section.lateral.is_some()),
         platforms: runtimes
             .iter()
@@ -254,14 +251,14 @@ pub(super) fn sentences(verdict: &Verdict, motion: Option<String>) -> Vec<String
 
 /// The motion at the onset.
 fn motion(onset: &Onset) -> String {
-    format!(
-        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; {}.",
-        digits(onset.at.speed_m_s),
-        digits(onset.at.frequency_hz),
-        digits(onset.at.reduced_velocity.v_star()),
-        digits(onset.at.reduced_frequency.full_width()),
-        onset.mode_in_words(),
-    )
+    let (at, mode) = (&onset.at, onset.mode_in_words());
+    let [speed, hertz] = [at.speed_m_s, at.frequency_hz].map(digits);
+    let (v_star, k) = (
+        at.reduced_velocity.v_star(),
+        at.reduced_frequency.full_width(),
+    );
+    let [v_star, k] = [v_star, k].map(digits);
+    format!("Flutter onset at {speed} m/s with {hertz} Hz, V* = {v_star}, K = {k}; {mode}.")
 }
 
 /// Of a discrete model: Δs, the wind speed of the experiment, and Δt there.
@@ -312,10 +309,8 @@ pub(super) fn rows<'a>(
         let found = all.find(|e| e.attribute("valueReference") == Some(reference));
         found.and_then(|e| e.attribute("name"))
     };
-    all()
-        .map(|element| row(element, &named))
-        .filter(|row| !out.contains(row.name))
-        .collect()
+    let rows = all().map(|element| row(element, &named));
+    rows.filter(|row| !out.contains(row.name)).collect()
 }
 
 fn row<'a>(element: &'a Element, named: &dyn Fn(&str) -> Option<&'a str>) -> Row<'a> {

@@ -157,21 +157,17 @@ impl Runtime {
         std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
         let mut found = Vec::new();
         for (platform, extension, ..) in PLATFORMS {
-            let file = folder
-                .join(platform)
-                .join(format!("{MODEL_IDENTIFIER}.{extension}"));
+            let own = folder.join(platform);
+            let file = own.join(format!("{MODEL_IDENTIFIER}.{extension}"));
             if file.is_file() {
                 let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
                 found.push(Self::new(platform, Cow::Owned(bytes)).map_err(|e| e.in_file(&file))?);
             }
         }
-        ensure(
-            !found.is_empty() || live_file(folder).is_file(),
-            RUNTIME_DIR_VARIABLE,
-            format_args!("a folder with, for example, linux64/{MODEL_IDENTIFIER}.so"),
-            "none of these",
-        )
-        .map_err(|e| e.in_file(folder))?;
+        let (any, place) = (!found.is_empty(), RUNTIME_DIR_VARIABLE);
+        let any = any || live_file(folder).is_file();
+        let expected = format_args!("a folder with, for example, linux64/{MODEL_IDENTIFIER}.so");
+        ensure(any, place, expected, "none of these").map_err(|e| e.in_file(folder))?;
         Ok(found)
     }
 
@@ -180,12 +176,10 @@ impl Runtime {
         let Some((platform, extension, beginnings, words)) = known else {
             return Err(Error::input("runtime", "a platform of FMI", platform));
         };
-        ensure(
-            beginnings.iter().any(|b| bytes.starts_with(b)),
-            format!("runtime for {platform}"),
-            format_args!("a shared library ({words})"),
-            format_args!("{} other bytes", bytes.len()),
-        )?;
+        let begins = beginnings.iter().any(|b| bytes.starts_with(b));
+        let (place, found) = (format!("runtime for {platform}"), bytes.len());
+        let expected = format_args!("a shared library ({words})");
+        ensure(begins, place, expected, format_args!("{found} other bytes"))?;
         Ok(Self {
             words: match platform {
                 "linux64" if is_arm(&bytes) => "Linux, 64-bit ARM",

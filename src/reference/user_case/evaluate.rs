@@ -74,9 +74,8 @@ impl LoadedCase {
     fn new(case: &UserCase) -> Result<Self> {
         let a = &case.aerodynamics;
         let mut section = case.section.clone();
-        let dofs = section
-            .as_ref()
-            .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
+        let stated = section.as_ref();
+        let dofs = stated.map_or(Dof::TWO.to_vec(), SectionModel::dofs);
         let (model, tested): (Box<dyn Transfer>, _) = if let Some(path) = &a.model {
             let trained = TrainedModel::read(&case.directory.join(path))?;
             section.get_or_insert(trained.section);
@@ -183,10 +182,9 @@ impl LoadedCase {
 
     fn onset(&self, route: Option<OnsetMethod>) -> Result<Onset> {
         let realizable = self.model.realizable();
-        let route = route.unwrap_or(if realizable.is_some() {
-            OnsetMethod::Eigenvalues
-        } else {
-            OnsetMethod::Determinant
+        let route = route.unwrap_or(match realizable.is_some() {
+            true => OnsetMethod::Eigenvalues,
+            false => OnsetMethod::Determinant,
         });
         let (s, model) = (&self.structure, self.model.as_ref());
         let search = OnsetSearch::up_to(self.speed_max);

@@ -11,7 +11,7 @@ use crate::flutter::{
     UnwantedGrowth, divergence_speed, divergence_with_forces, find_onset, find_onset_of_modes,
     pk_onset, static_part, trace_modes, unwanted_growth_below,
 };
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::ReducedFrequency;
 use crate::verdict::{MeanRotation, ModesLeftOut, UntestedParts};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -167,7 +167,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let tested = study.tested_range();
     let (of_tables, by_model) = rayon::join(
         || study.by_table.as_ref().map(|b| by_table(b, &search)),
-        || by_model(&study.by_model, &search, tested),
+        || by_model(study),
     );
     let of_tables = of_tables.transpose();
     answers.extend(noted(&mut failed, "p-k iteration of the tables", of_tables));
@@ -193,7 +193,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     // modal shapes of all modes at all speeds are megabytes that nobody reads
     let points = curves.branches.iter_mut().flat_map(|b| &mut b.points);
     points.for_each(|p| p.shape = Vec::new());
-    let left_out = fewer_modes(study, &by_model, &search);
+    let left_out = fewer_modes(study, &by_model);
     let left_out = noted(&mut failed, "fewer modes", left_out);
     let forces = study.by_model.forces();
     let at_rest = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
@@ -290,12 +290,9 @@ fn by_table(bridge: &Bridge, search: &OnsetSearch) -> Result<BridgeAnswer> {
     answer(name, bridge, &forces, found)
 }
 
-fn by_model(
-    bridge: &Bridge,
-    search: &OnsetSearch,
-    tested: Option<ReducedFrequencyRange>,
-) -> Result<BridgeAnswer> {
-    let found = find_onset("model", &coupled(bridge)?, search, tested)?;
+fn by_model(study: &BridgeStudy) -> Result<BridgeAnswer> {
+    let (bridge, tested) = (&study.by_model, study.tested_range());
+    let found = find_onset("model", &coupled(bridge)?, &study.search(), tested)?;
     answer("model", bridge, &bridge.forces(), found)
 }
 
@@ -320,11 +317,7 @@ fn answer(
 }
 
 /// The onset with the modes of at least each share of the energy.
-fn fewer_modes(
-    study: &BridgeStudy,
-    full: &BridgeAnswer,
-    search: &OnsetSearch,
-) -> Result<Vec<LeftOut>> {
+fn fewer_modes(study: &BridgeStudy, full: &BridgeAnswer) -> Result<Vec<LeftOut>> {
     let (bridge, mut all) = (&study.by_model, Vec::<LeftOut>::new());
     let shares = full.motion.as_ref().map_or(&[][..], |m| &m.modes);
     for below_share in SHARES.into_iter().filter(|_| !shares.is_empty()) {
@@ -339,7 +332,7 @@ fn fewer_modes(
         part.modes.retain(|m| modes.contains(&m.number));
         // the whole bridge was searched: the modes that are left are followed alone
         let (part, tested) = (coupled(&part)?, study.tested_range());
-        let onset_m_s = find_onset_of_modes("fewer modes", &part, search, tested)?;
+        let onset_m_s = find_onset_of_modes("fewer modes", &part, &study.search(), tested)?;
         all.push(LeftOut {
             modes,
             below_share,

@@ -40,6 +40,8 @@ impl BridgeStudy {
         }));
         let mut remarks = self.notes.clone();
         let stated = self.sections.iter().all(|s| s.angle_deg.is_some());
+        let sections = self.sections.iter();
+        let amplitudes_deg = sections.filter_map(|s| s.rotation_amplitude_deg);
         let ended = results.curves.ended.iter();
         remarks.extend(ended.map(|why| format!("The curves end early: {why}")));
         Evidence {
@@ -55,11 +57,7 @@ impl BridgeStudy {
                 ..mean
             }),
             // the section that was moved least is what the answer rests on
-            tested_rotation_deg: self
-                .sections
-                .iter()
-                .filter_map(|s| s.rotation_amplitude_deg)
-                .reduce(f64::min),
+            tested_rotation_deg: amplitudes_deg.reduce(f64::min),
             untested: results.untested.clone(),
             modes_left_out: results.modes_left_out.clone(),
             galloping: results
@@ -207,9 +205,8 @@ impl BridgeStudy {
         let taken: Vec<usize> = bridge.groups.iter().flat_map(|g| g.nodes.clone()).collect();
         let bare = |n: &usize| !taken.contains(n) && bridge.nodes[*n].length_m > 0.0;
         let nodes: Vec<usize> = (0..bridge.nodes.len()).filter(bare).collect();
-        let factors = nodes
-            .iter()
-            .map(|n| self.file.wind.factor(bridge.nodes[*n].along_m));
+        let factors = nodes.iter();
+        let factors = factors.map(|n| self.file.wind.factor(bridge.nodes[*n].along_m));
         let wind_factor = factors.sum::<f64>() / nodes.len() as f64;
         (!nodes.is_empty()).then(|| StripGroup {
             name: IN_NO_SECTION.to_owned(),

@@ -167,12 +167,9 @@ impl BridgeStudy {
         }
         let nodes = self.by_model.nodes.len();
         let count = wanted.gust_strips.unwrap_or(0);
-        ensure(
-            count <= nodes && wanted.gust_strips != Some(0),
-            "strips with gusts",
-            format_args!("1 to {nodes}, the nodes of the bridge"),
-            count,
-        )?;
+        let some = count <= nodes && wanted.gust_strips != Some(0);
+        let expected = format_args!("1 to {nodes}, the nodes of the bridge");
+        ensure(some, "strips with gusts", expected, count)?;
         let first = |strip: usize| (strip * nodes).div_ceil(count);
         let strips = (0..count).map(|s| (first(s)..first(s + 1)).collect());
         let sections = self.file.sections.iter().map(|s| s.name.as_str());

@@ -166,10 +166,8 @@ impl SectionForceModels {
         let (two, found) = (block.motions == Dof::TWO, Dof::names(&block.motions));
         ensure(two, place.as_str(), expected, found)?;
         let expected = "a table in a file (.csv, .xlsx)";
-        let (place, found) = (
-            format!("{place}: convention"),
-            format_args!("`{FLAT_PLATE}`"),
-        );
+        let place = format!("{place}: convention");
+        let found = format_args!("`{FLAT_PLATE}`");
         ensure(block.convention.is_empty(), place, expected, found)?;
         let jones = RationalModel::jones_flat_plate();
         Ok(Self {

@@ -155,10 +155,8 @@ pub(crate) fn buffeting_study(
     if study.time.speeds_m_s.is_empty() {
         of_spectra.extend(responses.get(responses.len() / 2).map(|r| r.speed_m_s));
     }
-    let spectra = of_spectra
-        .iter()
-        .map(|speed| setting.spectra(*speed))
-        .collect::<Result<_>>()?;
+    let spectra = of_spectra.iter().map(|speed| setting.spectra(*speed));
+    let spectra = spectra.collect::<Result<_>>()?;
     Ok(BuffetingStudy {
         aerodynamics: study.aerodynamics.clone(),
         dofs: setting.structure.dofs.clone(),

@@ -18,10 +18,8 @@ const STATIC: &str = "static";
 impl FmuExportArgs {
     /// Refuses what a bridge, or this part of one, does not have.
     fn check_bridge(&self) -> Result<()> {
-        let (forces, whole) = (
-            self.kind == ExportKind::Force,
-            self.kind == ExportKind::Section,
-        );
+        let forces = self.kind == ExportKind::Force;
+        let whole = self.kind == ExportKind::Section;
         let (kind, of_gusts) = match self.kind {
             ExportKind::Section => ("--bridge", GUST_STRIPS),
             ExportKind::Force => (
@@ -36,27 +34,18 @@ impl FmuExportArgs {
         let of_forces = "--kind force with it";
         let of_whole = "--kind section: the whole bridge";
         let on_all = "none: forces act on all nodes";
+        let prediction = !forces && self.prediction.is_some();
+        let gust_strips = !whole && self.gust_strips.is_some();
+        let turbulence = !whole && self.turbulence.is_some();
         let flags = [
             ("--strips", self.strips.is_some(), strips),
             ("--strip-length", self.strip_length.is_some(), strips),
-            (
-                "--prediction",
-                !forces && self.prediction.is_some(),
-                of_forces,
-            ),
+            ("--prediction", prediction, of_forces),
             ("--section", !forces && self.section.is_some(), of_forces),
             ("--gusts", other_gusts, of_gusts),
             ("--nodes", forces && !self.nodes.is_empty(), on_all),
-            (
-                "--gust-strips",
-                !whole && self.gust_strips.is_some(),
-                of_whole,
-            ),
-            (
-                "--turbulence",
-                !whole && self.turbulence.is_some(),
-                of_whole,
-            ),
+            ("--gust-strips", gust_strips, of_whole),
+            ("--turbulence", turbulence, of_whole),
         ];
         none_of(flags, kind)
     }
@@ -137,10 +126,8 @@ impl FmuExportArgs {
         whole: &TrainedModel,
         verdict: &Verdict,
     ) -> Result<(PathBuf, String, Value)> {
-        let gusts = self
-            .gusts
-            .as_ref()
-            .map(|_| self.admittance.unwrap_or_default());
+        let admittance = self.admittance.unwrap_or_default();
+        let gusts = self.gusts.as_ref().map(|_| admittance);
         let all = study.section_forces(whole, gusts)?;
         let mut forces = match &self.section {
             Some(name) => chosen(name, all)?,

@@ -235,10 +235,9 @@ impl ReferenceUnit {
         let wind = self.wind().map(|place| Stimulus {
             place,
             mean: planned.wind_m_s,
-            amplitude: if planned.driven {
-                0.02 * planned.wind_m_s
-            } else {
-                0.0
+            amplitude: match planned.driven {
+                true => 0.02 * planned.wind_m_s,
+                false => 0.0,
             },
             frequency_hz: 0.3,
             phase: 0.0,
