@@ -92,11 +92,9 @@ fn fill(table: &Table, frame: &Frame, nodes: &PlacedNodes, modes: &mut [BridgeMo
     }
     for m in modes {
         if let Some(missing) = m.shape.iter().position(|u| u[0].is_nan()) {
-            return Err(Error::input(
-                format!("mode {}", m.number),
-                format!("a row for each of the {} nodes of {NODES}", nodes.len()),
-                format!("none for node {}", nodes[missing].0),
-            ));
+            let expected = format!("a row for each of the {} nodes of {NODES}", nodes.len());
+            let found = format!("none for node {}", nodes[missing].0);
+            return Err(Error::input(format!("mode {}", m.number), expected, found));
         }
     }
     Ok(())
