@@ -8,8 +8,7 @@
 //!
 //! `examples/export_modes_opensees.py` writes them.
 
-use super::axes::{Frame, mode};
-use super::modal_data::PlacedNodes;
+use super::modal_data::{Frame, PlacedNodes, mode};
 use super::table::{Table, TableRow};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};

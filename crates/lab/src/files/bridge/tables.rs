@@ -6,8 +6,7 @@
 //!
 //! Lines that begin with `#` are comments; columns stand in any order and others are ignored.
 
-use super::axes::{Frame, motion};
-use super::modal_data::PlacedNodes;
+use super::modal_data::{Frame, PlacedNodes, motion};
 use super::table::{Table, TableRow};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};

@@ -245,9 +245,7 @@ impl VirtualCampaignPlan {
         }
         Ok(())
     }
-}
 
-impl VirtualCampaignPlan {
     /// Reads and checks a plan; what it does not state is as in [`VirtualCampaignPlan::default`].
     ///
     /// # Errors
