@@ -2,7 +2,6 @@
 
 mod broadband;
 pub mod campaign;
-mod motion;
 pub mod processing;
 mod raw;
 mod record_file;

@@ -1,8 +1,8 @@
 //! Dimensionless forces of the virtual tunnel: from test points of a table, or as the response of a model; and the forces that a model
 //! predicts for the motion of a record (thesis, 3.7 and 3.8).
 
-use super::motion::UnitMotion;
 use super::records::Record;
+use super::tunnel_plan::UnitMotion;
 use crate::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Part,
 };

@@ -107,7 +107,7 @@ pub(super) fn mode(
 pub(super) type PlacedNodes = Vec<(String, [f64; 3])>;
 
 /// Nodes and modes of a bridge, in vertical, lateral and rotation, before its sections and its damping are known.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct BridgeModes {
     /// Where they come from, in words.
     pub source: String,
