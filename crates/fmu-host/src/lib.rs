@@ -31,7 +31,6 @@ use aerodeck_unit::{location, standard};
 mod archive;
 mod checks;
 mod description;
-mod examination;
 mod findings;
 mod growth;
 mod library;

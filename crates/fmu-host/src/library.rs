@@ -104,12 +104,11 @@ unsafe fn function<F: Copy>(library: &Library, symbol: &str) -> Result<F> {
 
 /// Name of a function in a version of the standard, which differ in the case of some.
 pub(super) fn spelt(suffix: &str, is_fmi3: bool) -> String {
-    if is_fmi3 {
-        let suffix = suffix.replace("FMUstate", "FMUState");
-        format!("fmi3{}", suffix.replace("DeSer", "Deser"))
-    } else {
-        format!("fmi2{suffix}")
+    if !is_fmi3 {
+        return format!("fmi2{suffix}");
     }
+    let suffix = suffix.replace("FMUstate", "FMUState");
+    format!("fmi3{}", suffix.replace("DeSer", "Deser"))
 }
 
 // what both versions have with the same arguments

@@ -81,11 +81,8 @@ impl FmuFindings {
                 }
                 Some(position) if position < last => {
                     let (own, other) = (tag(&child.name), tag(ROOT_CHILDREN[last]));
-                    self.error(
-                        place(child),
-                        format!("{own} before {other}"),
-                        "it after that",
-                    );
+                    let expected = format!("{own} before {other}");
+                    self.error(place(child), expected, "it after that");
                 }
                 Some(position) => last = position,
             }

@@ -201,10 +201,9 @@ impl VariableIndex {
         let size = dimension.unwrap_or(1);
         let reference = reference(v);
         // as FMI 3.0 stores an enumeration
-        let of_type = if kind == "Enumeration" {
-            "Int64"
-        } else {
-            &v.name
+        let of_type = match kind {
+            "Enumeration" => "Int64",
+            _ => &v.name,
         };
         let function = NUMERIC.iter().position(|(name, _)| *name == of_type);
         let starts = starts(v);

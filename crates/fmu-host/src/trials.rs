@@ -102,12 +102,8 @@ fn versions(fmu: &Fmu) -> Result<String> {
     let place = "fmi2GetTypesPlatform, fmi2GetVersion, fmi3GetVersion";
     let expected = "`default`, the version of the description";
     let found = format_args!("`{platform}`, `{version}`");
-    ensure(
-        platform == "default" && is_described,
-        place,
-        expected,
-        found,
-    )?;
+    let holds = platform == "default" && is_described;
+    ensure(holds, place, expected, found)?;
     Ok(format!("platform {platform}, version {version}"))
 }
 

@@ -2,8 +2,6 @@
 
 mod broadband;
 pub mod campaign;
-mod motion;
-mod prediction;
 pub mod processing;
 mod raw;
 mod record_file;
@@ -14,7 +12,6 @@ pub mod virtual_campaign;
 mod virtual_forces;
 mod virtual_tunnel;
 
-pub use prediction::predicted_forces;
 pub(crate) use raw::CELL_CHANNELS;
 pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig};
 pub(crate) use record_file::SAMPLES_AT_LEAST;
@@ -22,3 +19,4 @@ pub use record_file::{read_record, write_record};
 pub use record_format::RecordFile;
 pub use records::{Record, RecordHeader, RecordSource, Segment};
 pub use tunnel_plan::{TrainingMotion, TunnelPlan};
+pub use virtual_forces::predicted_forces;

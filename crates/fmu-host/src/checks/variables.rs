@@ -61,11 +61,8 @@ pub(super) fn types(d: &ModelDescription, f: &mut FmuFindings) {
             }
             Some(t) if t.kind != v.kind => {
                 let expected = format!("a declared type of kind {:?}", v.kind);
-                f.error(
-                    v.place(),
-                    expected,
-                    format!("`{name}` of kind {:?}", t.kind),
-                );
+                let found = format!("`{name}` of kind {:?}", t.kind);
+                f.error(v.place(), expected, found);
             }
             Some(_) => {}
         }

@@ -5,13 +5,11 @@
 //! vertical, lateral and rotation themselves (our own single file, MATLAB `phi`) are in those axes already.
 
 mod abaqus;
-mod axes;
-mod dampers;
+mod blocks;
 mod field;
 mod matlab;
 mod modal_data;
 mod opensees;
-mod section_block;
 mod section_forces;
 mod single_file;
 mod table;
@@ -19,17 +17,13 @@ mod tables;
 mod toml_file;
 mod turbsim;
 mod wawi;
-mod wind_block;
 
-pub use axes::{Direction, WindAxes};
-pub use dampers::DamperBlock;
+pub use blocks::{BridgeSectionBlock, DamperBlock, ProfilePoint, StaticBlock, WindBlock};
 pub use field::FieldTable;
-pub use modal_data::{BridgeModes, tributary_lengths};
-pub use section_block::{BridgeSectionBlock, StaticBlock};
+pub use modal_data::{BridgeModes, Direction, WindAxes, tributary_lengths};
 pub use section_forces::{ModalSectionForces, read_section_forces};
 pub use single_file::write_modes;
 pub use toml_file::{BridgeFile, DampingRatios, ModesBlock, ModesFormat, SearchBlock};
-pub use wind_block::{ProfilePoint, WindBlock};
 
 use crate::error::Result;
 use std::path::Path;

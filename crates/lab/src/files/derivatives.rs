@@ -4,7 +4,6 @@ mod csv_file;
 mod csv_header;
 mod csv_wide;
 pub mod embedded;
-mod missing;
 mod stated_convention;
 mod wide_sheet;
 mod workbook;

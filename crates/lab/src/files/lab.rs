@@ -13,7 +13,6 @@
 //! read, under names without the group.
 
 mod channels;
-mod columns;
 mod csv_file;
 mod guarded;
 mod hdf5_file;

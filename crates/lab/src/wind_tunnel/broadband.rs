@@ -4,9 +4,8 @@
 //! their coefficients best determined (thesis, section 2.4); a multi-sine puts all its power into chosen frequencies. Both
 //! start and end at rest with the ramps of the harmonic motions, and never exceed the amplitude of the plan.
 
-use super::motion::{UnitMotion, window};
 use super::records::Record;
-use super::tunnel_plan::{TrainingMotion, TunnelPlan};
+use super::tunnel_plan::{TrainingMotion, TunnelPlan, UnitMotion, window};
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };

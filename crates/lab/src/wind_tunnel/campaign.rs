@@ -8,12 +8,8 @@ mod channel;
 mod channel_map;
 mod file;
 mod findings;
-mod load;
 mod ntnu;
-mod quantity;
 mod recording;
-mod section_forces;
-mod wind_speed;
 mod write;
 
 pub use channel_map::{SAME_RATE, sampling_by_time};

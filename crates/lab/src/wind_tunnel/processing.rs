@@ -2,7 +2,7 @@
 //!
 //! The measured force is `F_tot = F_E + F_G + F_I + F_B + F_Se + F_S` (3.1). In this order, each a function of its own file:
 //!
-//! 1. [`check`]: lengths, rates, finite numbers, clipping;
+//! 1. `prepare`: lengths, rates, finite numbers, clipping;
 //! 2. [`segmentation`]: the test points, from the motion;
 //! 3. [`lag`]: force channels behind the motion, from the inertia in still air, and the sign of that inertia;
 //! 4. [`drift`] of the cells, in their own axes;
@@ -17,7 +17,6 @@
 
 mod body;
 pub mod cells;
-pub mod check;
 pub mod coherent;
 pub mod drift;
 pub mod lag;
@@ -91,22 +90,22 @@ pub fn process(
         progress(1 + done.fetch_add(1, Ordering::Relaxed));
         Ok(run)
     };
-    let runs = prepared.into_par_iter().map(process).collect();
-    let mut report = ProcessingReport {
+    let processed = prepared.into_par_iter().map(process).collect();
+    let (mut records, mut runs, mut stages) = (Vec::new(), Vec::new(), Vec::new());
+    for (of_run, run, after_stages) in all_or_errors(processed)? {
+        records.extend(of_run);
+        runs.push(run);
+        stages.push(after_stages);
+    }
+    let deltas = runs.iter().map(|run: &RunReport| run.dimensionless.delta_s);
+    let report = ProcessingReport {
         section: campaign.section.clone(),
         options: options.clone(),
         lag_s,
         lag_standard_error_s,
-        common_delta_s: 0.0,
-        runs: Vec::new(),
+        common_delta_s: deltas.fold(0.0, f64::max),
+        runs,
     };
-    let (mut records, mut stages) = (Vec::new(), Vec::new());
-    for (of_run, run, after_stages) in all_or_errors(runs)? {
-        report.common_delta_s = report.common_delta_s.max(run.dimensionless.delta_s);
-        records.extend(of_run);
-        report.runs.push(run);
-        stages.push(after_stages);
-    }
     Ok(Processed {
         records,
         report,

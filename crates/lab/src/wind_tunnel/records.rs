@@ -21,7 +21,7 @@ pub struct Segment {
 }
 
 /// Run, section, air, wind speed and sampling of a record: everything but its samples.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordHeader {
     /// Name of the run.

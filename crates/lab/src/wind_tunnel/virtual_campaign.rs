@@ -20,13 +20,11 @@
 mod forces;
 mod make;
 mod plan;
-mod truth;
 
-pub use make::VirtualCampaign;
+pub use make::{AppliedDisturbances, AppliedSpike, TruthPoint, VirtualCampaign};
 pub use plan::{
     Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence, VirtualCampaignPlan,
 };
-pub use truth::{AppliedDisturbances, AppliedSpike, TruthPoint};
 
 #[cfg(doc)]
 use super::TunnelPlan;

@@ -15,9 +15,8 @@
 //! frequency of the segment is therefore `f = K V/(2πB)` with the point's own `K` and the record's `V`, within a
 //! per cent of the frequency that was driven, and the dimensionless force is exactly `G` at the point's own `K`.
 
-use super::motion::UnitMotion;
 use super::records::{Record, RecordHeader};
-use super::tunnel_plan::{TrainingMotion, TunnelPlan};
+use super::tunnel_plan::{TrainingMotion, TunnelPlan, UnitMotion};
 use super::virtual_forces::{TransferColumn, unit_response};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::DerivativeTable;
@@ -165,8 +164,7 @@ impl TunnelPlan {
             mean_speed_m_s: speed_m_s,
             sampling_hz: self.sampling_hz,
             segments: unit.segments.clone(),
-            source: String::new(),
-            licence: String::new(),
+            ..RecordHeader::default()
         }
     }
 

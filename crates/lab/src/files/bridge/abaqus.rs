@@ -8,8 +8,7 @@
 //!
 //! `examples/export_modes_abaqus.py` writes them from an output database.
 
-use super::axes::{Frame, mode};
-use super::modal_data::PlacedNodes;
+use super::modal_data::{Frame, PlacedNodes, mode};
 use super::table::{Table, TableRow};
 use super::tables;
 use crate::bridge::BridgeMode;

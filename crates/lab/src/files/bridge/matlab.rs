@@ -74,12 +74,10 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<BridgeModes> {
         length_m,
     });
     Ok(BridgeModes {
-        reversed: false,
         source: "MATLAB wn and phi".to_owned(),
         nodes: nodes.collect(),
-        left_out: Vec::new(),
         modes: all,
-        offsets_m: Vec::new(),
+        ..BridgeModes::default()
     })
 }
 

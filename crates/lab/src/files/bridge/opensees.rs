@@ -8,8 +8,7 @@
 //!
 //! `examples/export_modes_opensees.py` writes them.
 
-use super::axes::{Frame, mode};
-use super::modal_data::PlacedNodes;
+use super::modal_data::{Frame, PlacedNodes, mode};
 use super::table::{Table, TableRow};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};
@@ -47,13 +46,10 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
         let masses = table.all_numbers()?;
         let least = masses.iter().copied().fold(f64::INFINITY, f64::min);
         let count = masses.len();
-        ensure(
-            count == modes && masses.iter().all(|m| *m > 0.0),
-            "",
-            format_args!("{modes} positive masses, one per eigenvalue"),
-            format_args!("{count} numbers, the least {least}"),
-        )?;
-        Ok(masses)
+        let fits = count == modes && masses.iter().all(|m| *m > 0.0);
+        let expected = format_args!("{modes} positive masses, one per eigenvalue");
+        let found = format_args!("{count} numbers, the least {least}");
+        ensure(fits, "", expected, found).map(|()| masses)
     })
 }
 

@@ -79,12 +79,11 @@ pub(super) fn parse(text: &str) -> Result<BridgeModes> {
     let modes = modes.collect::<Result<Vec<_>>>()?;
     refuse_unstated(&table, &modes)?;
     Ok(BridgeModes {
-        reversed: false,
         source: header.text("source"),
-        left_out: Vec::new(),
         modes,
         nodes,
         offsets_m,
+        ..BridgeModes::default()
     })
 }
 

@@ -6,8 +6,7 @@
 //!
 //! Lines that begin with `#` are comments; columns stand in any order and others are ignored.
 
-use super::axes::{Frame, motion};
-use super::modal_data::PlacedNodes;
+use super::modal_data::{Frame, PlacedNodes, motion};
 use super::table::{Table, TableRow};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Place, Result, ensure};
@@ -92,11 +91,9 @@ fn fill(table: &Table, frame: &Frame, nodes: &PlacedNodes, modes: &mut [BridgeMo
     }
     for m in modes {
         if let Some(missing) = m.shape.iter().position(|u| u[0].is_nan()) {
-            return Err(Error::input(
-                format!("mode {}", m.number),
-                format!("a row for each of the {} nodes of {NODES}", nodes.len()),
-                format!("none for node {}", nodes[missing].0),
-            ));
+            let expected = format!("a row for each of the {} nodes of {NODES}", nodes.len());
+            let found = format!("none for node {}", nodes[missing].0);
+            return Err(Error::input(format!("mode {}", m.number), expected, found));
         }
     }
     Ok(())

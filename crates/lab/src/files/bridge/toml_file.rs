@@ -1,10 +1,8 @@
 //! `bridge.toml`: where the modes are, sections along the span, wind profile, damping.
 
-use super::dampers::DamperBlock;
+use super::blocks::{BridgeSectionBlock, DamperBlock, WindBlock};
 use super::matlab::SpanBlock;
 use super::modal_data::BridgeModes;
-use super::section_block::BridgeSectionBlock;
-use super::wind_block::WindBlock;
 use super::{WindAxes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
 use crate::bridge::{BridgeMode, Dampers};
 use crate::error::{Error, Result, ensure, non_negative, of_schema, positive};

@@ -6,6 +6,7 @@
 
 use super::field::FieldTable;
 use crate::error::{Error, Result, ensure, finite};
+use crate::signal::mean;
 use std::path::Path;
 
 /// The ending of such files.
@@ -112,12 +113,8 @@ impl TurbSimHeader {
         let (hub, lowest) = (self.hub_height_m, self.lowest_m);
         let inside = self.counts[0] == 1 || rows.contains(&hub);
         let expected = format_args!("one within the grid, {lowest} to {top} m");
-        ensure(
-            inside,
-            "height of the hub",
-            expected,
-            format_args!("{hub} m"),
-        )?;
+        let found = format_args!("{hub} m");
+        ensure(inside, "height of the hub", expected, found)?;
         for c in ALONG_AND_UP {
             let place = format_args!("slope of component {}", c + 1);
             let is_any = self.scales[c][0] != 0.0;
@@ -190,7 +187,7 @@ fn parse(bytes: &[u8]) -> Result<FieldTable> {
 }
 
 fn without_mean(mut samples: Vec<f64>) -> Vec<f64> {
-    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
+    let mean = mean(&samples);
     samples.iter_mut().for_each(|x| *x -= mean);
     samples
 }

@@ -2,8 +2,7 @@
 //!
 //! `phi.full` has six rows per node, in the order of `node_matrix`, and one column per mode; axes are those of the nodes.
 
-use super::axes::{Frame, mode};
-use super::modal_data::PlacedNodes;
+use super::modal_data::{Frame, PlacedNodes, mode};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, counted, ensure};
 use crate::files::text::parsed;

@@ -22,13 +22,12 @@
 //! double back. The mean speed may be left empty throughout. Files of the first format, without notation, argument and
 //! axes but with a `sign_convention`, are read as what they are: Scanlan with ½ over V̂, heave up.
 
-use super::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint};
 use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Place, Result, ensure};
 use crate::files::derivatives::csv_header::{
-    ReadOptions, provenance, read_head, stated, width_stated, write_head,
+    ReadOptions, fill_in, provenance, read_head, stated, width_stated, write_head,
 };
 use crate::files::derivatives::csv_wide::{self, Rows};
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};

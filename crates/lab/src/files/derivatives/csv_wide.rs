@@ -12,13 +12,12 @@
 //! commas (in all numbers or in none), and tabs are understood. The `# key: value` lines of the long form may stand above,
 //! all of them optional but what states the convention.
 
-use super::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint, Notation};
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use crate::error::{Error, Place, Result, counted, ensure, positive};
 use crate::files::derivatives::csv_header::{
-    ReadOptions, WIDTH_ASSUMED, provenance, read_head, stated, width_stated,
+    ReadOptions, WIDTH_ASSUMED, fill_in, provenance, read_head, stated, width_stated,
 };
 use crate::files::header_csv::CommentHeader;
 use crate::files::header_csv::number;

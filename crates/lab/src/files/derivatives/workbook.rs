@@ -11,13 +11,12 @@
 //! `axes` beside their values); the columns are then called as in that notation (`MeanWind_h1`, `Vred_h1`, `h1`),
 //! whatever the sheet `Reduced Velocities` holds.
 
-use super::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint};
 use crate::aerodynamics::derivatives::table::check_point_count;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Result, ensure, positive};
 use crate::files::derivatives::StatedConvention;
-use crate::files::derivatives::csv_header::{ReadOptions, WIDTH_ASSUMED};
+use crate::files::derivatives::csv_header::{ReadOptions, WIDTH_ASSUMED, fill_in};
 use crate::files::derivatives::xlsx_cells::{OpenWorkbook, Sheet, cell_name, sheet_of};
 use crate::files::header_csv;
 use crate::files::lab::Attribute;

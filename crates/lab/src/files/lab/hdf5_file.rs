@@ -1,7 +1,6 @@
 //! HDF5, and MATLAB v7.3, which is HDF5 with MATLAB's dimensions reversed, by `hdf5-pure`.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use super::columns::push_array;
 use super::guarded;
 use crate::error::{Error, Result};
 use hdf5_pure::{AttrValue, DType, Dataset, File, FormatError, Group};
@@ -191,7 +190,7 @@ impl Hdf5Reader {
             return Ok(());
         }
         let units = units(&attributes);
-        push_array(&mut self.set, path, &shape, false, values, &units);
+        self.set.push_array(path, &shape, false, values, &units);
         Ok(())
     }
 

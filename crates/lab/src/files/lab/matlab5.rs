@@ -4,7 +4,6 @@
 //! no integers; all three are seen to here.
 
 use super::channels::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
-use super::columns::push_array;
 use super::guarded;
 use crate::error::{Error, Result, ensure};
 use matrw::{MatVariable, MatlabType};
@@ -285,7 +284,7 @@ fn push(set: &mut ChannelSet, name: &str, variable: &MatVariable) {
             set.leave_out(name, "complex numbers");
         }
         MatVariable::NumericArray(array) => match numbers(array.numeric_type()) {
-            Ok(values) => push_array(set, name, &array.dim, true, values, &[]),
+            Ok(values) => set.push_array(name, &array.dim, true, values, &[]),
             Err(text) => {
                 let text = Attribute::Text(text);
                 set.attributes.insert(name.to_owned(), text);

@@ -2,9 +2,8 @@
 
 use super::air::Air;
 use super::channel::ChannelRef;
-use super::channel_map::ChannelMap;
+use super::channel_map::{CELL, ChannelMap, SectionForces};
 use super::ntnu;
-use super::section_forces::{self, SectionForces};
 use crate::error::{Error, Result, at_most, ensure, of_schema, positive};
 use crate::files::toml_lines;
 use crate::section::Dof;
@@ -163,7 +162,7 @@ impl Campaign {
     pub(crate) fn channel_map(&self) -> ChannelMap {
         let mut map = self.channels.clone();
         if let Some(section) = &self.channels.section {
-            let cell = (section_forces::CELL.to_owned(), section.channels());
+            let cell = (CELL.to_owned(), section.channels());
             map.cells.extend([cell]);
         } else if let (Some(RecordingLayout::Ntnu), Some(rig)) = (self.recording.layout, &self.rig)
         {

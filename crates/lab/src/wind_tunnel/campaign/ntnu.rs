@@ -60,6 +60,9 @@ pub(super) fn rig(rig: &Rig) -> Rig {
     }
 }
 
+/// Name, numbers, shape and units.
+type Dataset<'a> = (&'a str, Vec<f64>, &'a [u64], &'a [&'a str]);
+
 /// One group a recording: `RUN-wind` and `RUN-still`.
 pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
     let rig = &made.raw.rig;
@@ -78,7 +81,7 @@ pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
             let of_cells = &["N", "N", "N", "Nm", "Nm", "Nm"].repeat(CELLS)[..];
             let at_cells = |about_centre| forces(recording, rig, about_centre);
             let wind = recording.wind_speed_m_s.clone();
-            let datasets: [(&str, Vec<f64>, &[u64], &[&str]); 6] = [
+            let datasets: [Dataset<'_>; 6] = [
                 ("temperature", vec![temperature_c(density)], &[], &["C"]),
                 ("air_density", vec![density], &[], &["kg/m^3"]),
                 ("wind_velocity", wind, &[n], &["m/s"]),

@@ -2,10 +2,10 @@
 
 use super::body::StillAirInertia;
 use super::cells::CellShare;
-use super::check::ClippedStretch;
 use super::drift::CellDrift;
 use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
+use super::prepare::ClippedStretch;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
 use super::signals::{HarmonicSegment, highest_hz};

@@ -126,20 +126,14 @@ impl Default for Support {
             position_m,
             turns_with_model: true,
         };
+        // x of either cell points along ±y, z outwards; mounted a little off the axis of rotation
+        let near = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
+        let far = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
         Self {
             model_length_m: 2.68,
-            // x of either cell points along ±y, z outwards; mounted a little off the axis of rotation
             cells: vec![
-                cell(
-                    "near",
-                    [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
-                    [0.012, -0.035, -1.40],
-                ),
-                cell(
-                    "far",
-                    [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
-                    [-0.006, -0.035, 1.40],
-                ),
+                cell("near", near, [0.012, -0.035, -1.40]),
+                cell("far", far, [-0.006, -0.035, 1.40]),
             ],
             share_of_first: 0.56,
             clamping_n: [3.0, -5.0, 12.0],
@@ -251,9 +245,7 @@ impl VirtualCampaignPlan {
         }
         Ok(())
     }
-}
 
-impl VirtualCampaignPlan {
     /// Reads and checks a plan; what it does not state is as in [`VirtualCampaignPlan::default`].
     ///
     /// # Errors

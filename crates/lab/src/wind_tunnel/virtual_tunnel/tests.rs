@@ -1,6 +1,6 @@
 //! The records against closed forms, an integration in time, and each other.
 
-use super::super::motion::ramped_sine;
+use super::super::tunnel_plan::ramped_sine;
 use super::*;
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::aerodynamics::{RationalModel, Realizable, Realization};
