@@ -26,13 +26,10 @@ pub const STANDARD_AIR_DENSITY_KG_M3: f64 = 1.25;
 /// assert_eq!(Dof::names(&Dof::TWO), "vertical, torsion");
 /// assert_eq!(Dof::Torsion.force_scale(31.0), 31.0 * 31.0); // a moment per metre over ½ρV²
 /// ```
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dof {
     /// Vertical displacement `y` and lift, positive up.
-    #[default]
     Vertical,
     /// Lateral displacement `x` and drag, positive downwind.
     Lateral,

@@ -207,11 +207,6 @@ impl Fmu {
         Slave::new(&self.load()?, name, &self.description.guid, false)
     }
 
-    /// A new instance that logs all it has to say.
-    pub(crate) fn instantiate_logging(&self, name: &str) -> Result<Slave> {
-        Slave::new(&self.load()?, name, &self.description.guid, true)
-    }
-
     /// A new instance with another fingerprint than the one in the description, which a careful FMU refuses.
     pub fn instantiate_with_guid(&self, name: &str, guid: &str) -> Result<Slave> {
         Slave::new(&self.load()?, name, guid, false)

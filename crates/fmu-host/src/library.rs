@@ -240,31 +240,25 @@ impl Binary {
     }
 }
 
-/// Names of all functions that must be there, supported or not.
-fn symbols(is_fmi3: bool) -> Vec<String> {
+/// Adds a finding for each function that is missing, supported or not; loading problems come as one finding.
+pub(super) fn check_symbols(path: &Path, is_fmi3: bool, place: &str, findings: &mut FmuFindings) {
+    let library = match open(path) {
+        Ok(library) => library,
+        Err(e) => return findings.error(place, "a library that loads", e.to_string()),
+    };
     let own = match is_fmi3 {
         false => Fmi2Functions::SUFFIXES,
         true => Fmi3Functions::SUFFIXES,
     };
     let suffixes = SharedFunctions::SUFFIXES.iter().chain(own);
-    let mut names: Vec<String> = suffixes.map(|suffix| spelt(suffix, is_fmi3)).collect();
+    let mut symbols: Vec<String> = suffixes.map(|suffix| spelt(suffix, is_fmi3)).collect();
     for (name, _) in NUMERIC.iter().filter(|_| is_fmi3) {
-        names.extend([format!("fmi3Get{name}"), format!("fmi3Set{name}")]);
+        symbols.extend([format!("fmi3Get{name}"), format!("fmi3Set{name}")]);
     }
-    names
-}
-
-/// Adds a finding for each function that is missing; loading problems come as one finding.
-pub(super) fn check_symbols(path: &Path, is_fmi3: bool, place: &str, findings: &mut FmuFindings) {
-    match open(path) {
-        Err(e) => findings.error(place, "a library that loads", e.to_string()),
-        Ok(library) => {
-            for symbol in symbols(is_fmi3) {
-                // SAFETY: only asked whether it is there, never called through this type
-                if unsafe { library.get::<unsafe extern "C" fn()>(symbol.as_bytes()) }.is_err() {
-                    findings.error(place, format!("the function {symbol}"), "none");
-                }
-            }
+    for symbol in symbols {
+        // SAFETY: only asked whether it is there, never called through this type
+        if unsafe { library.get::<unsafe extern "C" fn()>(symbol.as_bytes()) }.is_err() {
+            findings.error(place, format!("the function {symbol}"), "none");
         }
     }
 }

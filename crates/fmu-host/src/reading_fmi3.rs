@@ -26,8 +26,9 @@ pub(super) const NUMERIC: [(&str, &str); 11] = [
 /// Most elements of all arrays, which are read one by one.
 const MAX_ELEMENTS: usize = 1_000_000;
 
-/// Names of capabilities that are spelt otherwise.
-const CAPABILITIES: [(&str, &str); 3] = [
+/// Attributes of the description and its capabilities that are spelt otherwise.
+const RENAMED: [(&str, &str); 4] = [
+    ("instantiationToken", "guid"),
     ("canGetAndSetFMUState", "canGetAndSetFMUstate"),
     ("canSerializeFMUState", "canSerializeFMUstate"),
     (
@@ -51,14 +52,10 @@ pub(super) fn translated(
     root: &Element,
     findings: &mut FmuFindings,
 ) -> (Element, Vec<ArrayElement>) {
-    let mut described = like(root, &root.name);
-    for (name, value) in &root.attributes {
-        let name = match name.as_str() {
-            "instantiationToken" => "guid",
-            other => other,
-        };
-        described = described.with(name, value);
-    }
+    let mut described = Element {
+        attributes: renamed(root),
+        ..like(root, &root.name)
+    };
     let variables = root.child("ModelVariables");
     let all = variables.map(|v| v.children.as_slice()).unwrap_or_default();
     let mut t = VariableIndex {
@@ -72,7 +69,11 @@ pub(super) fn translated(
     });
     for child in &root.children {
         match child.name.as_str() {
-            "ModelExchange" | "CoSimulation" => described.children.push(capabilities(child)),
+            "ModelExchange" | "CoSimulation" => {
+                let mut spelt = child.clone();
+                spelt.attributes = renamed(child);
+                described.children.push(spelt);
+            }
             "TypeDefinitions" => {
                 let types = child.children.iter().filter_map(simple_type);
                 let types = like(child, &child.name).containing(types);
@@ -98,10 +99,10 @@ fn like(of: &Element, name: &str) -> Element {
     }
 }
 
-fn capabilities(interface: &Element) -> Element {
-    let mut spelt = interface.clone();
-    for (name, _) in &mut spelt.attributes {
-        if let Some((_, two)) = CAPABILITIES.iter().find(|(three, _)| three == name) {
+fn renamed(of: &Element) -> Vec<(String, String)> {
+    let mut spelt = of.attributes.clone();
+    for (name, _) in &mut spelt {
+        if let Some((_, two)) = RENAMED.iter().find(|(three, _)| three == name) {
             *name = (*two).to_owned();
         }
     }

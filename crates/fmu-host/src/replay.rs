@@ -131,12 +131,8 @@ fn repeated(fmu: &Fmu, file: &str, experiment: &Element) -> Result<ReplayedRun> 
     let found = format_args!("{outputs} outputs, {found} rows");
     ensure(fits, "<References>", wanted, found).map_err(|e| e.in_file(file))?;
     let found = in_new_instance(fmu, &times, values, &stimuli, &expected)?;
-    let found = compared(&expected, &found).map_err(|e| e.in_file(file))?;
-    Ok(ReplayedRun {
-        file: file.to_owned(),
-        name: experiment.attribute("name").unwrap_or_default().to_owned(),
-        ..found
-    })
+    let name = experiment.attribute("name").unwrap_or_default();
+    compared(file, name, &expected, &found).map_err(|e| e.in_file(file))
 }
 
 /// Of the latest draft, or of the one before, where the times are the experiment's own.
@@ -253,15 +249,20 @@ fn in_new_instance(
 }
 
 /// The largest difference of all values.
-fn compared(expected: &ValueTable, found: &ValueTable) -> Result<ReplayedRun> {
+fn compared(
+    file: &str,
+    name: &str,
+    expected: &ValueTable,
+    found: &ValueTable,
+) -> Result<ReplayedRun> {
     for (said, is) in expected.rows.iter().zip(&found.rows) {
         let same = (said[0] - is[0]).abs() <= SAME * is[0].abs().max(1.0);
         let at = format_args!("outputs at {} s", is[0]);
         ensure(same, "reference run", at, format_args!("at {} s", said[0]))?;
     }
     let mut worst = ReplayedRun {
-        file: String::new(),
-        name: String::new(),
+        file: file.to_owned(),
+        name: name.to_owned(),
         values: expected.rows.len() * (expected.names.len() - 1),
         difference: 0.0,
         variable: expected.names.get(1).cloned().unwrap_or_default(),
@@ -310,19 +311,19 @@ mod tests {
             names: vec!["time".into(), "x".into()],
             rows: vec![vec![0.0, values[0]], vec![1.0, values[1]]],
         };
-        let worst = compared(&table([1.0, -2.0]), &table([1.0, -2.0 + 1e-6])).unwrap();
+        let worst = compared("", "", &table([1.0, -2.0]), &table([1.0, -2.0 + 1e-6])).unwrap();
         assert_eq!(
             (worst.variable.as_str(), worst.time_s, worst.same),
             ("x", 1.0, false)
         );
         assert!((worst.difference - 5e-7).abs() < 1e-12);
         assert!(
-            compared(&table([1.0, 2.0]), &table([1.0, 2.0]))
+            compared("", "", &table([1.0, 2.0]), &table([1.0, 2.0]))
                 .unwrap()
                 .same
         );
         assert!(
-            !compared(&table([1.0, 2.0]), &table([f64::NAN, 2.0]))
+            !compared("", "", &table([1.0, 2.0]), &table([f64::NAN, 2.0]))
                 .unwrap()
                 .same
         );

@@ -134,8 +134,9 @@ impl<'a> Plan<'a> {
         })
     }
 
+    /// A new instance that logs all it has to say.
     fn instance(&self) -> Result<Slave> {
-        self.fmu.instantiate_logging("trial")
+        Slave::new(&self.fmu.load()?, "trial", &self.fmu.description.guid, true)
     }
 
     fn initialised(&self) -> Result<Slave> {

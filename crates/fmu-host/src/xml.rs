@@ -132,10 +132,8 @@ impl Element {
 
     /// Value of an attribute, if it is there.
     pub fn attribute(&self, name: &str) -> Option<&str> {
-        self.attributes
-            .iter()
-            .find(|(n, _)| n == name)
-            .map(|(_, v)| v.as_str())
+        let mut all = self.attributes.iter();
+        all.find(|(n, _)| n == name).map(|(_, v)| v.as_str())
     }
 
     /// The first child of that name.
@@ -173,10 +171,8 @@ fn element(tag: &BytesStart<'_>, line: usize) -> Result<Element> {
 }
 
 fn forbidden(c: char) -> String {
-    format!(
-        "the character U+{:04X}, which XML cannot hold",
-        u32::from(c)
-    )
+    let code = u32::from(c);
+    format!("the character U+{code:04X}, which XML cannot hold")
 }
 
 fn malformed(line: usize, found: &dyn std::fmt::Display) -> Error {

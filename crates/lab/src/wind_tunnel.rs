@@ -13,7 +13,7 @@ mod virtual_forces;
 mod virtual_tunnel;
 
 pub(crate) use raw::CELL_CHANNELS;
-pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig};
+pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig, RunFinding};
 pub(crate) use record_file::SAMPLES_AT_LEAST;
 pub use record_file::{read_record, write_record};
 pub use record_format::RecordFile;

@@ -14,7 +14,6 @@ mod write;
 
 pub use channel_map::{SAME_RATE, sampling_by_time};
 pub use file::Campaign;
-pub use findings::RunFinding;
 pub use write::FileFormat;
 pub use write::write_virtual_campaign;
 

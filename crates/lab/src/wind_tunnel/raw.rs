@@ -10,12 +10,12 @@
 //! ones: `v_global = axes · v_local`. The sign of a channel is that of the force **on the cell by the model**, so
 //! that inertia of an accelerating model of mass m shows as −m ẍ.
 
-use super::campaign::RunFinding;
 use crate::error::{Result, ensure, finite_numbers, positive};
 use crate::plausibility::FindingSeverity;
 use crate::section::Dof;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Names of the six channels of a load cell, in their order: forces in N, moments in N·m.
 pub(crate) const CELL_CHANNELS: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
@@ -193,5 +193,76 @@ impl RawCampaign {
     pub fn words(&self, severity: FindingSeverity) -> Vec<String> {
         let of_weight = self.findings.iter().filter(|f| f.severity == severity);
         of_weight.map(ToString::to_string).collect()
+    }
+}
+
+/// Something that a user should look at.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunFinding {
+    /// Name of the run; empty for the campaign file.
+    pub run: String,
+    /// Recording: `in wind` or `still air`; empty for the run as a whole.
+    pub recording: String,
+    /// Channel as the file names it, if one is meant.
+    pub channel: Option<String>,
+    /// First sample, from 0.
+    pub sample: Option<usize>,
+    /// Number of samples from there.
+    pub samples: Option<usize>,
+    /// How much it weighs: a doubt where what is stated and what is measured contradict each other.
+    pub severity: FindingSeverity,
+    /// What was found.
+    pub what: String,
+}
+
+impl fmt::Display for RunFinding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.run.is_empty() {
+            return write!(f, "{}", self.what);
+        }
+        write!(f, "run `{}`", self.run)?;
+        if !self.recording.is_empty() {
+            write!(f, ", {}", self.recording)?;
+        }
+        if let Some(channel) = &self.channel {
+            write!(f, ", `{channel}`")?;
+        }
+        if let Some(sample) = self.sample {
+            write!(f, ", sample {sample}")?;
+        }
+        write!(f, ": {}", self.what)
+    }
+}
+
+impl RunFinding {
+    /// About a run as a whole.
+    pub(super) fn of_run(run: &str, severity: FindingSeverity, what: String) -> Self {
+        Self {
+            run: run.to_owned(),
+            recording: String::new(),
+            channel: None,
+            sample: None,
+            samples: None,
+            severity,
+            what,
+        }
+    }
+
+    /// A note about a channel of a recording, of whose samples a stretch may be meant: the first, and how many.
+    pub(super) fn of_channel(
+        run: &str,
+        recording: &str,
+        channel: &str,
+        stretch: Option<(usize, usize)>,
+        what: String,
+    ) -> Self {
+        let (sample, samples) = stretch.unzip();
+        Self {
+            recording: recording.to_owned(),
+            channel: Some(channel.to_owned()),
+            sample,
+            samples,
+            ..Self::of_run(run, FindingSeverity::Note, what)
+        }
     }
 }

@@ -21,9 +21,10 @@ mod forces;
 mod make;
 mod plan;
 
-pub use make::{AppliedDisturbances, AppliedSpike, TruthPoint, VirtualCampaign};
+pub use make::VirtualCampaign;
 pub use plan::{
-    Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence, VirtualCampaignPlan,
+    AppliedDisturbances, AppliedSpike, Disturbances, ModelBody, Spike, StaticWind, Support,
+    TruthPoint, TunnelTurbulence, VirtualCampaignPlan,
 };
 
 #[cfg(doc)]

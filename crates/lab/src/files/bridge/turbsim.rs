@@ -6,7 +6,6 @@
 
 use super::field::FieldTable;
 use crate::error::{Error, Result, ensure, finite};
-use crate::signal::mean;
 use std::path::Path;
 
 /// The ending of such files.
@@ -187,7 +186,7 @@ fn parse(bytes: &[u8]) -> Result<FieldTable> {
 }
 
 fn without_mean(mut samples: Vec<f64>) -> Vec<f64> {
-    let mean = mean(&samples);
+    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
     samples.iter_mut().for_each(|x| *x -= mean);
     samples
 }

@@ -5,7 +5,7 @@
 
 use crate::aerodynamics::quasi_steady::StaticCoefficients;
 use crate::error::{Error, Result};
-use crate::files::coefficients::parse_coefficients;
+use crate::files::coefficients::csv_file::parse_coefficients;
 use crate::files::header_csv::embedded_name;
 
 /// Content of each file.

@@ -11,9 +11,7 @@ use crate::section::Dof;
 use crate::signal::{
     clipped_stretches, extremes, largest_magnitude, mean, mean_and_deviation, median,
 };
-use crate::wind_tunnel::RawRun;
-use serde::Serialize;
-use std::fmt;
+use crate::wind_tunnel::{RawRun, RunFinding};
 
 /// A motion that should not be there may have this part of the one that should, both dimensionless.
 const OTHER_MOTION_AT_MOST: f64 = 0.05;
@@ -27,77 +25,6 @@ const AIR_OF_A_LABORATORY: Limits = Limits {
 const SPEED_OFF_AT_MOST: f64 = 0.05;
 /// Beyond this part one of them is not the speed of the run: derivatives go with its square.
 const ANOTHER_SPEED: f64 = 0.2;
-
-/// Something that a user should look at.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RunFinding {
-    /// Name of the run; empty for the campaign file.
-    pub run: String,
-    /// Recording: `in wind` or `still air`; empty for the run as a whole.
-    pub recording: String,
-    /// Channel as the file names it, if one is meant.
-    pub channel: Option<String>,
-    /// First sample, from 0.
-    pub sample: Option<usize>,
-    /// Number of samples from there.
-    pub samples: Option<usize>,
-    /// How much it weighs: a doubt where what is stated and what is measured contradict each other.
-    pub severity: FindingSeverity,
-    /// What was found.
-    pub what: String,
-}
-
-impl fmt::Display for RunFinding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.run.is_empty() {
-            return write!(f, "{}", self.what);
-        }
-        write!(f, "run `{}`", self.run)?;
-        if !self.recording.is_empty() {
-            write!(f, ", {}", self.recording)?;
-        }
-        if let Some(channel) = &self.channel {
-            write!(f, ", `{channel}`")?;
-        }
-        if let Some(sample) = self.sample {
-            write!(f, ", sample {sample}")?;
-        }
-        write!(f, ": {}", self.what)
-    }
-}
-
-impl RunFinding {
-    /// About a run as a whole.
-    pub(super) fn of_run(run: &str, severity: FindingSeverity, what: String) -> Self {
-        Self {
-            run: run.to_owned(),
-            recording: String::new(),
-            channel: None,
-            sample: None,
-            samples: None,
-            severity,
-            what,
-        }
-    }
-
-    /// A note about a channel of a recording, of whose samples a stretch may be meant: the first, and how many.
-    pub(super) fn of_channel(
-        run: &str,
-        recording: &str,
-        channel: &str,
-        stretch: Option<(usize, usize)>,
-        what: String,
-    ) -> Self {
-        let (sample, samples) = stretch.unzip();
-        Self {
-            recording: recording.to_owned(),
-            channel: Some(channel.to_owned()),
-            sample,
-            samples,
-            ..Self::of_run(run, FindingSeverity::Note, what)
-        }
-    }
-}
 
 /// First stretch of samples that are no numbers: where it begins and how long it is.
 pub(super) fn first_gap(samples: &[f64]) -> Option<(usize, usize)> {

@@ -7,20 +7,22 @@ use super::channel_map::{
     ChannelMap, SAME_RATE, SectionForces, cell_quantity, described, sampling_by_time, sampling_of,
 };
 use super::file::{Campaign, FileRef, RunBlock};
-use super::findings::{RunFinding, channel_findings, file_hints, first_gap, run_findings};
+use super::findings::{channel_findings, file_hints, first_gap, run_findings};
 use crate::error::{Error, Result, ensure, positive};
 use crate::files::lab::ChannelSet;
 use crate::section::Dof;
 use crate::signal::mean;
 use crate::wind_tunnel::processing::all_or_errors;
-use crate::wind_tunnel::{CELL_CHANNELS, RawCampaign, RawRecording, RawRun, Rig, SAMPLES_AT_LEAST};
+use crate::wind_tunnel::{
+    CELL_CHANNELS, RawCampaign, RawRecording, RawRun, Rig, RunFinding, SAMPLES_AT_LEAST,
+};
 use aerodeck_core::threads;
 
 impl Campaign {
     /// Reads all recordings.
     ///
     /// # Errors
-    /// [`Error::Io`](crate::error::Error::Io); [`Error::Input`](crate::error::Error::Input) naming run, recording, channel and sample: a channel that the file does not
+    /// [`Error::Io`]; [`Error::Input`] naming run, recording, channel and sample: a channel that the file does not
     /// hold (with those that it does), channels of unequal length or rate, samples that are no numbers, a unit that
     /// does not fit, a mean speed that is not positive, air of unknown density. The errors of all runs, in their order.
     pub fn load(&self) -> Result<RawCampaign> {

@@ -3,7 +3,7 @@
 
 use super::lag::{Ratios, still_air_inertia};
 use super::options::ProcessingOptions;
-use super::report::{LAG_TURNS, RunReport};
+use super::report::{ClippedStretch, LAG_TURNS, RunReport};
 use super::segmentation::{find_segments, moving_dof, whole_periods};
 use super::signals::{HarmonicSegment, highest_hz};
 use super::{body, index, lag, still_air};
@@ -11,7 +11,6 @@ use crate::error::{Error, Result, ensure, positive};
 use crate::section::Dof;
 use crate::signal::{check_clipping, check_finite};
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, SAMPLES_AT_LEAST};
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Of the steady periods at a frequency, still air covers at least this part.
@@ -111,7 +110,7 @@ impl RunReport {
     pub(super) fn clipped_ranges(&self, covered: &Range<usize>) -> Vec<Range<usize>> {
         let place = |x: f64| (x.max(0.0) as usize).min(covered.len());
         let range = |c: &ClippedStretch| {
-            let late = self.alignment.filter(|_| c.is_in_still_air());
+            let late = self.alignment.filter(|_| c.channel.starts_with(STILL_AIR));
             let late = late.map_or(0.0, |a| a.offset_samples);
             let first = c.first as f64 - late - covered.start as f64;
             place(first.floor())..place((first + c.samples as f64).ceil())
@@ -206,24 +205,6 @@ const SAME_RATE: f64 = 1e-6;
 
 /// What channels of the recording in still air are called first.
 const STILL_AIR: &str = "still air";
-
-/// A stretch in which a channel stood at its limit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ClippedStretch {
-    /// Channel, with the recording it is of.
-    pub channel: String,
-    /// First sample.
-    pub first: usize,
-    /// Number of samples.
-    pub samples: usize,
-}
-
-impl ClippedStretch {
-    /// Whether it is of the recording in still air.
-    fn is_in_still_air(&self) -> bool {
-        self.channel.starts_with(STILL_AIR)
-    }
-}
 
 /// Checks both recordings of a run: clipped stretches in wind, then in still air, and what the user should know.
 ///

@@ -5,7 +5,6 @@ use super::cells::CellShare;
 use super::drift::CellDrift;
 use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
-use super::prepare::ClippedStretch;
 use super::rest::{CrossTalk, RemovedMeans};
 use super::segmentation::is_near;
 use super::signals::{HarmonicSegment, highest_hz};
@@ -15,6 +14,17 @@ use crate::error::{Result, ensure};
 use crate::section::Dof;
 use crate::wind_tunnel::{RawRun, Rig};
 use serde::{Deserialize, Serialize};
+
+/// A stretch in which a channel stood at its limit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClippedStretch {
+    /// Channel, with the recording it is of.
+    pub channel: String,
+    /// First sample.
+    pub first: usize,
+    /// Number of samples.
+    pub samples: usize,
+}
 
 /// Force on the whole model after a stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -46,7 +56,7 @@ pub struct SignalToNoise {
 }
 
 /// Factors of the dimensionless form.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DimensionlessFactors {
     /// Mean wind speed V, m/s.
     pub speed_m_s: f64,
@@ -59,7 +69,7 @@ pub struct DimensionlessFactors {
 }
 
 /// Everything that was done to one run.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunReport {
     /// Name of the run.
     pub run: String,
@@ -173,13 +183,30 @@ impl RunReport {
             dof,
             sampling_hz,
             samples: run.in_wind.sample_count(),
+            cut: [0; 2],
+            clipped: Vec::new(),
+            segments: Vec::new(),
+            still_air: None,
+            lag_corrected_s: 0.0,
+            alignment: None,
+            cells: Vec::new(),
+            means: RemovedMeans::default(),
+            inertia: RemovedInertia::default(),
+            replaced: Vec::new(),
+            cell_drift: Vec::new(),
+            drift: RemovedDrift::default(),
+            low_pass: None,
+            cross_talk: CrossTalk::default(),
+            signal_to_noise: SignalToNoise::default(),
             dimensionless: DimensionlessFactors {
                 speed_m_s: speed,
                 air_density_kg_m3: density,
                 pressure_pa: 0.5 * density * speed.powi(2),
                 delta_s: speed / (rig.model_width_m * sampling_hz),
             },
-            ..Self::default()
+            levels: Vec::new(),
+            warnings: Vec::new(),
+            doubts: Vec::new(),
         }
     }
 

@@ -1,8 +1,9 @@
 //! What the load cells of a virtual campaign are made to say: forces of the rigid model about its centre of rotation, gusts,
 //! what measurement adds, and the channels of the cells.
 
-use super::make::AppliedSpike;
-use super::plan::{Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence};
+use super::plan::{
+    AppliedSpike, Disturbances, ModelBody, Spike, StaticWind, Support, TunnelTurbulence,
+};
 use crate::signal::largest_magnitude;
 use crate::wind_tunnel::{Record, Segment};
 use nalgebra::{Rotation3, Vector3, Vector6};

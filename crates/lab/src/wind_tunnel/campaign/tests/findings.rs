@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::plausibility::FindingSeverity;
-use crate::wind_tunnel::campaign::findings::RunFinding;
+use crate::wind_tunnel::RunFinding;
 
 fn findings(a: &str, b: &str) -> Vec<String> {
     let reading = load(&small(), a, b).unwrap();
