@@ -262,61 +262,6 @@ impl OnsetSampler<'_> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::files::bridge::BridgeFile;
-    use crate::flutter::find_onset;
-
-    /// Frequencies that scatter change the motion at flutter; what is followed is what a search finds.
-    #[test]
-    fn what_is_followed_is_what_a_search_finds() {
-        let text = super::super::demo_bridge_text().replace("model = ", "# model = ");
-        let file = BridgeFile::from_toml(&text, std::path::PathBuf::new()).unwrap();
-        let study = BridgeStudy::new(file).unwrap();
-        let search = study.search();
-        let mean = coupled(&study.by_model).unwrap();
-        let mean = find_onset("mean", &mean, &search, study.tested_range()).unwrap();
-        let scatter = Scatter {
-            frequency: 0.02,
-            damping: 0.3,
-            derivatives: DerivativeScatter::Measured,
-            samples: 4,
-            seed: 1,
-        };
-        let sampler = OnsetSampler {
-            study: &study,
-            scatter: &scatter,
-            forces: study.drawn_forces(scatter.derivatives).unwrap(),
-            scale: None,
-            nearby: NearbyOnset::new(&study.by_model, &mean.onset().unwrap().at).unwrap(),
-        };
-        let mut searched = 0;
-        for index in 0..scatter.samples as u64 {
-            let speed = sampler
-                .followed(index)
-                .unwrap()
-                .expect("a motion that is known again");
-            let other = coupled(&sampler.sample(index, 1.0).unwrap()).unwrap();
-            let all = other.at(speed).unwrap().eigenvalues().unwrap();
-            assert!(
-                all.iter().any(|l| l.im > 1.0 && l.re.abs() < 1e-9),
-                "{index}"
-            );
-            let found = find_onset("sample", &other, &search, study.tested_range()).unwrap();
-            let of_modes =
-                find_onset_of_modes("sample", &other, &search, study.tested_range()).unwrap();
-            assert_eq!(of_modes, found.critical_speed_m_s());
-            // where the onset lies outside the tested range the search names the end of that instead
-            if let Some(onset) = found.onset() {
-                assert!((speed / onset.at.speed_m_s - 1.0).abs() < 1e-8, "{index}");
-                searched += 1;
-            }
-        }
-        assert!(searched >= 3, "{searched}");
-    }
-}
-
 /// Forces of a model, each entry multiplied by a factor.
 struct Scaled {
     dofs: Vec<Dof>,
@@ -376,5 +321,60 @@ impl Transfer for Scaled {
 impl Realizable for Scaled {
     fn realize(&self) -> Realization {
         self.realization.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::bridge::BridgeFile;
+    use crate::flutter::find_onset;
+
+    /// Frequencies that scatter change the motion at flutter; what is followed is what a search finds.
+    #[test]
+    fn what_is_followed_is_what_a_search_finds() {
+        let text = super::super::demo_bridge_text().replace("model = ", "# model = ");
+        let file = BridgeFile::from_toml(&text, std::path::PathBuf::new()).unwrap();
+        let study = BridgeStudy::new(file).unwrap();
+        let search = study.search();
+        let mean = coupled(&study.by_model).unwrap();
+        let mean = find_onset("mean", &mean, &search, study.tested_range()).unwrap();
+        let scatter = Scatter {
+            frequency: 0.02,
+            damping: 0.3,
+            derivatives: DerivativeScatter::Measured,
+            samples: 4,
+            seed: 1,
+        };
+        let sampler = OnsetSampler {
+            study: &study,
+            scatter: &scatter,
+            forces: study.drawn_forces(scatter.derivatives).unwrap(),
+            scale: None,
+            nearby: NearbyOnset::new(&study.by_model, &mean.onset().unwrap().at).unwrap(),
+        };
+        let mut searched = 0;
+        for index in 0..scatter.samples as u64 {
+            let speed = sampler
+                .followed(index)
+                .unwrap()
+                .expect("a motion that is known again");
+            let other = coupled(&sampler.sample(index, 1.0).unwrap()).unwrap();
+            let all = other.at(speed).unwrap().eigenvalues().unwrap();
+            assert!(
+                all.iter().any(|l| l.im > 1.0 && l.re.abs() < 1e-9),
+                "{index}"
+            );
+            let found = find_onset("sample", &other, &search, study.tested_range()).unwrap();
+            let of_modes =
+                find_onset_of_modes("sample", &other, &search, study.tested_range()).unwrap();
+            assert_eq!(of_modes, found.critical_speed_m_s());
+            // where the onset lies outside the tested range the search names the end of that instead
+            if let Some(onset) = found.onset() {
+                assert!((speed / onset.at.speed_m_s - 1.0).abs() < 1e-8, "{index}");
+                searched += 1;
+            }
+        }
+        assert!(searched >= 3, "{searched}");
     }
 }
