@@ -9,6 +9,7 @@ use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeF
 use crate::selection::{Recommendation, Selection, metric_grid, select};
 use crate::signal::extremes;
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
+use crate::units::in_equal_ratios;
 use crate::wind_tunnel::{Record, RecordSource};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -296,7 +297,7 @@ fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result
     let expected = "two poles, the lower one first (needed for records without segments)";
     let found = format_args!("{low} and {high}");
     ensure(ordered, "--min, --max", expected, found)?;
-    let values = (0..choice.values).map(|i| low * (high / low).powf(i as f64 / last));
+    let values = in_equal_ratios(low, high, choice.values);
     Ok(GridAxis::Continuous(
         values.collect(),
         Box::new(records_fit(study)),

@@ -8,8 +8,8 @@ use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::identification::{
-    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit,
-    fit_discrete, fit_records, fit_table,
+    Constraints, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit, fit_discrete,
+    fit_records, fit_table,
 };
 use crate::numbered::{OnDone, numbered};
 use crate::section::Dof;
@@ -154,11 +154,7 @@ impl ComparedModel {
 /// This program's fit with the filters of the thesis: left to the data there would be more of them.
 fn with_feed_through() -> TimeFit {
     TimeFit {
-        form: Form::Laguerre {
-            filters: Some(THESIS_FILTERS),
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        },
+        form: Form::laguerre(THESIS_FILTERS),
         ..TimeFit::default()
     }
 }
