@@ -244,7 +244,7 @@ fn uncertainties_that_make_no_model_are_refused() {
         let mut file: serde_json::Value = serde_json::from_str(&whole).unwrap();
         *file.pointer_mut(place).expect(place) = value;
         let read = ModelUncertainty::from_json(&file.to_string());
-        read.err().expect(place).to_string()
+        read.expect_err(place).to_string()
     };
     let own = |key: &str| format!("/coefficients/{key}");
     for (place, value, expected) in [
