@@ -11,6 +11,7 @@ use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeF
 use crate::selection::{Selection, metric_grid, select};
 use crate::signal::extremes;
 use crate::study::{Deck, ModelBlock, RecordSet};
+use crate::units::in_equal_ratios;
 use crate::wind_tunnel::RecordSource;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -232,7 +233,11 @@ fn recommended(choice: &Choice, study: &Study, selection: &Selection) -> Result<
     } else {
         let fit = records_fit(study);
         block.records = Some(TimeFit {
-            form: Form::laguerre(found.filters, fit.form.feed_through()),
+            form: Form::Laguerre {
+                filters: Some(found.filters),
+                feed_through: fit.form.feed_through(),
+                pole_per_transfer_function: false,
+            },
             poles: PoleSearch::fixed(&[found.value]),
             own: Vec::new(),
             ..fit
@@ -298,7 +303,7 @@ fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result
     let expected = "two poles, the lower one first (needed for records without segments)";
     let found = format_args!("{low} and {high}");
     ensure(ordered, "--min, --max", expected, found)?;
-    let values = (0..choice.values).map(|i| low * (high / low).powf(i as f64 / last));
+    let values = in_equal_ratios(low, high, choice.values);
     Ok(GridAxis::Continuous(
         values.collect(),
         Box::new(records_fit(study)),

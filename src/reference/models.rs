@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 use crate::files::derivatives::embedded;
 use crate::flutter::{Onset, divergence_speed, static_part};
 use crate::identification::{
-    Constraints, DiscreteFit, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights,
-    PoleSearch, TimeFit, fit_discrete, fit_records, fit_table, sample_model,
+    Constraints, DiscreteFit, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit,
+    fit_discrete, fit_records, fit_table, sample_model,
 };
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::Model;
@@ -50,10 +50,9 @@ pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
         };
         Ok::<_, Error>(fit_table(&samples, &Dof::TWO, &options)?.model)
     };
-    let laguerre = || Form::laguerre(3, FeedThrough::default());
     let rational = |lags, added_mass| Form::Rational { lags, added_mass };
-    let given = fit(laguerre(), PoleSearch::fixed(&[0.305]))?;
-    let searched = fit(laguerre(), PoleSearch::default())?;
+    let given = fit(Form::laguerre(3), PoleSearch::fixed(&[0.305]))?;
+    let searched = fit(Form::laguerre(3), PoleSearch::default())?;
     let one = fit(rational(1, false), PoleSearch::default())?;
     let two = fit(rational(2, true), PoleSearch::default())?;
     let mut figures = vec![onset_of_fit(&given)?, onset_of_fit(&searched)?];

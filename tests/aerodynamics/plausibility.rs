@@ -1,6 +1,7 @@
 //! Tests of the hints: silent on what is right, right on what is mislabelled.
 
 use crate::matrix;
+use crate::notation::read;
 use aerodeck::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
 use aerodeck::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use aerodeck::files::derivatives::embedded;
@@ -11,7 +12,7 @@ use aerodeck::section::Dof;
 fn mislabelled(deck: &DerivativeTable, truth: Convention, label: Convention) -> DerivativeTable {
     let mut written = truth.express(deck);
     written.convention = label;
-    written.to_table().unwrap()
+    read(&written)
 }
 
 /// The findings in one line.
@@ -100,7 +101,7 @@ fn single_slips_are_recognised() {
                     .for_each(|p| p.value = p.value.to_radians());
             }
         }
-        let hints = said(&in_degrees.to_table().unwrap(), own);
+        let hints = said(&read(&in_degrees), own);
         assert!(
             hints.contains("numbers per degree of rotation"),
             "{}: {hints}",

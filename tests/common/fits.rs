@@ -4,7 +4,7 @@ use crate::matrix::{NamedSection, fastest_growth};
 use aerodeck::aerodynamics::derivatives::DerivativeTable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::identification::{
-    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, MOST_CHOSEN, fit_table,
+    Constraints, FitReport, Fitted, Form, FrequencyFit, MOST_CHOSEN, fit_table,
 };
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::Model;
@@ -74,14 +74,6 @@ pub fn onset_m_s(model: &Model, named: &NamedSection) -> f64 {
     high
 }
 
-pub fn laguerre(filters: usize) -> Form {
-    Form::Laguerre {
-        filters: Some(filters),
-        feed_through: FeedThrough::default(),
-        pole_per_transfer_function: false,
-    }
-}
-
 pub fn rational(lags: usize) -> Form {
     Form::Rational {
         lags,
@@ -90,7 +82,7 @@ pub fn rational(lags: usize) -> Form {
 }
 
 pub fn forms() -> Vec<Form> {
-    let filters = (1..=MOST_CHOSEN).map(laguerre);
+    let filters = (1..=MOST_CHOSEN).map(Form::laguerre);
     filters.chain((1..3).map(rational)).collect()
 }
 

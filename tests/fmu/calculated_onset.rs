@@ -8,7 +8,7 @@ use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset, unwanted_growth};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
-use aerodeck::identification::{FeedThrough, Form, FrequencyFit, PoleSearch};
+use aerodeck::identification::{Form, FrequencyFit, PoleSearch};
 
 const LIMIT: f64 = 60.0;
 const CALCULATED: [&str; 3] = ["onset_speed", "onset_frequency", "onset_reduced_velocity"];
@@ -32,11 +32,7 @@ fn calculated_onsets_are_those_of_the_search() {
         speed_max_m_s: LIMIT,
         ..OnsetSearch::default()
     };
-    let laguerre = Form::Laguerre {
-        filters: Some(3),
-        feed_through: FeedThrough::default(),
-        pole_per_transfer_function: false,
-    };
+    let laguerre = Form::laguerre(3);
     let rational = Form::Rational {
         lags: 2,
         added_mass: true,

@@ -2,13 +2,11 @@
 //!
 //! `cargo test --release --test identification -- dissipative:: --ignored --nocapture` prints what the constraints change, as a table.
 
-use crate::fits::{
-    assert_stable_below_onset, bands, fitted, forms, laguerre, objective, onset_m_s, sources,
-};
+use crate::fits::{assert_stable_below_onset, bands, fitted, forms, objective, onset_m_s, sources};
 use crate::matrix::{decks, sections_of_three, sections_of_two};
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::identification::{
-    Constraints, Fitted, FrequencyFit, TimeFit, fit_records, fit_table, sample_model,
+    Constraints, Fitted, Form, FrequencyFit, TimeFit, fit_records, fit_table, sample_model,
 };
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Model;
@@ -72,11 +70,16 @@ fn three_filters_cost_little() {
         let Fitted {
             model: alone,
             report: before,
-        } = fitted(&table, &Dof::TWO, &laguerre(3), Constraints::None);
+        } = fitted(&table, &Dof::TWO, &Form::laguerre(3), Constraints::None);
         let Fitted {
             model: held,
             report: after,
-        } = fitted(&table, &Dof::TWO, &laguerre(3), Constraints::Dissipative);
+        } = fitted(
+            &table,
+            &Dof::TWO,
+            &Form::laguerre(3),
+            Constraints::Dissipative,
+        );
         for named in sections_of_two() {
             let (without, with) = (onset_m_s(&alone, &named), onset_m_s(&held, &named));
             let moved = with / without - 1.0;
@@ -118,7 +121,11 @@ fn a_flat_plate_does_not_feel_the_constraints() {
         let (alone, held) = (fit(Constraints::None), fit(Constraints::Dissipative));
         for named in sections_of_two() {
             let moved = onset_m_s(&held.model, &named) / onset_m_s(&alone.model, &named) - 1.0;
-            let tolerance = if form == laguerre(3) { 2e-4 } else { 2e-3 };
+            let tolerance = if form == Form::laguerre(3) {
+                2e-4
+            } else {
+                2e-3
+            };
             assert!(moved.abs() <= tolerance, "{}: {moved}", form.describe());
         }
     }
@@ -131,7 +138,7 @@ fn without_constraints_measured_decks_grow_in_slow_wind() {
     let growing = decks()
         .iter()
         .filter(|table| {
-            let model = fitted(table, &Dof::TWO, &laguerre(3), Constraints::None).model;
+            let model = fitted(table, &Dof::TWO, &Form::laguerre(3), Constraints::None).model;
             sections.iter().any(|s| bands(&model, s).len() > 1)
         })
         .count();

@@ -1,10 +1,10 @@
 //! Constrained fits against an independent method, and what they leave as it was.
 
-use crate::fits::{assert_stable_below_onset, fitted, forms, laguerre, rational, sources};
+use crate::fits::{assert_stable_below_onset, fitted, forms, rational, sources};
 use crate::matrix::{decks, sections_of_three, sections_of_two};
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::identification::{
-    Constraints, Fitted, FrequencyFit, PoleSearch, QuasiSteadyLimit, TimeFit, fit_records,
+    Constraints, Fitted, Form, FrequencyFit, PoleSearch, QuasiSteadyLimit, TimeFit, fit_records,
     fit_table, sample_model,
 };
 use aerodeck::section::Dof;
@@ -37,7 +37,7 @@ fn constrained_fits_are_those_of_an_interior_point_method() {
             &Dof::THREE[..]
         };
         let fit = FrequencyFit {
-            form: laguerre(case.filters),
+            form: Form::laguerre(case.filters),
             poles: PoleSearch::fixed(&[case.pole]),
             ..FrequencyFit::default()
         };
@@ -106,7 +106,7 @@ fn nothing_grows_below_the_onset_with_models_from_records() {
         let records = TunnelPlan::default()
             .records_from_table(&table, dofs)
             .unwrap();
-        for form in [laguerre(3), rational(2)] {
+        for form in [Form::laguerre(3), rational(2)] {
             let fit = TimeFit {
                 form,
                 ..TimeFit::default()
@@ -277,7 +277,7 @@ fn what_the_constraints_cost_in_time() {
     ] {
         let seconds = |constraints| {
             let fit = TimeFit {
-                form: laguerre(6),
+                form: Form::laguerre(6),
                 poles: poles.clone(),
                 constraints,
                 ..TimeFit::default()

@@ -2,7 +2,7 @@
 //!
 //! `cargo test --release --test identification -- moved_onsets:: --ignored --nocapture` prints the whole table.
 
-use crate::fits::{bands, fastest_m_s, fitted, laguerre, onset_m_s, rational};
+use crate::fits::{bands, fastest_m_s, fitted, onset_m_s, rational};
 use crate::matrix::{NamedSection, decks, sections_of_three, sections_of_two};
 use aerodeck::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
@@ -42,12 +42,12 @@ fn residuals(report: &FitReport) -> String {
 fn onsets_with_and_without_constraints_and_of_the_table() {
     let asked = std::env::var("FORMS").unwrap_or_default();
     let forms: Vec<Form> = if asked.is_empty() {
-        let rest = [laguerre(3), rational(2)];
+        let rest = [Form::laguerre(3), rational(2)];
         std::iter::once(Form::default()).chain(rest).collect()
     } else {
         let of = |s: &str| match s.split_at(1) {
             ("a", _) => Form::default(),
-            ("l", n) => laguerre(n.parse().unwrap()),
+            ("l", n) => Form::laguerre(n.parse().unwrap()),
             (_, n) => rational(n.parse().unwrap()),
         };
         asked.split(',').map(of).collect()

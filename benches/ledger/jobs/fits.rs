@@ -1,10 +1,10 @@
 //! Fits to records: of one short record, of a full set, of hours, of a grid.
 
-use super::models::{POLE, folder, full_set, laguerre, records, records_as_json, sources};
+use super::models::{POLE, folder, full_set, records, records_as_json, sources};
 use crate::entry::{Job, finding};
 use aerodeck::flutter::OnsetSearch;
 use aerodeck::identification::{
-    Constraints, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights, fit_records,
+    Constraints, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights, fit_records,
 };
 use aerodeck::section::SectionModel;
 use aerodeck::selection::select;
@@ -43,7 +43,7 @@ pub(crate) fn short_record() -> Job {
 pub(crate) fn training() -> Job {
     let records = full_set();
     let fit = TimeFit {
-        form: laguerre(6),
+        form: Form::laguerre(6),
         poles: PoleSearch::fixed(&[POLE]),
         constraints: Constraints::None,
         weights: TimeWeights::None,

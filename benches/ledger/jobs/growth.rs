@@ -2,7 +2,7 @@
 
 use super::bridge::{beam, problem};
 use super::fits;
-use super::models::{POLE, laguerre, sources};
+use super::models::{POLE, sources};
 use super::samples;
 use crate::bridges::coupled;
 use crate::entry::{Job, finding};
@@ -10,7 +10,7 @@ use aerodeck::Result;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::buffeting::{span_record, turbulence_field};
 use aerodeck::flutter::{OnsetSearch, find_onset, trace_modes};
-use aerodeck::identification::{Constraints, PoleSearch, TimeFit, TimeWeights, fit_records};
+use aerodeck::identification::{Constraints, Form, PoleSearch, TimeFit, TimeWeights, fit_records};
 use aerodeck::response::{Inputs, Stepper};
 use aerodeck::section::Dof;
 use aerodeck::wind_tunnel::{RecordHeader, RecordSource, Segment};
@@ -98,7 +98,7 @@ pub(crate) fn buffeting(modes: u64) -> Job {
 pub(crate) fn training(samples: u64) -> Job {
     let records = [0, 1].map(|moving| LongRecord::new(moving, samples as usize));
     let fit = TimeFit {
-        form: laguerre(6),
+        form: Form::laguerre(6),
         poles: PoleSearch::fixed(&[POLE]),
         constraints: Constraints::None,
         weights: TimeWeights::None,

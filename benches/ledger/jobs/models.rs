@@ -3,7 +3,7 @@
 use crate::trained;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
-use aerodeck::identification::{FeedThrough, Form, FrequencyFit, PoleSearch};
+use aerodeck::identification::{Form, FrequencyFit, PoleSearch};
 use aerodeck::section::Dof;
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::wind_tunnel::{Record, RecordSource, TunnelPlan};
@@ -40,18 +40,10 @@ pub(crate) fn coupled(model: &TrainedModel) -> CoupledSection {
     CoupledSection::new(structure, model.model.realize()).expect("a section")
 }
 
-pub(crate) fn laguerre(filters: usize) -> Form {
-    Form::Laguerre {
-        filters: Some(filters),
-        feed_through: FeedThrough::default(),
-        pole_per_transfer_function: false,
-    }
-}
-
 /// The deck LN21-5200 by four filters per motion at a given pole: twelve states with the section.
 pub(crate) fn four_filters() -> TrainedModel {
     let fit = FrequencyFit {
-        form: laguerre(4),
+        form: Form::laguerre(4),
         poles: PoleSearch::fixed(&[POLE]),
         ..FrequencyFit::default()
     };
@@ -62,7 +54,7 @@ pub(crate) fn four_filters() -> TrainedModel {
 /// fit takes by itself.
 pub(crate) fn by_filters(filters: usize) -> TrainedModel {
     let fit = FrequencyFit {
-        form: laguerre(filters),
+        form: Form::laguerre(filters),
         ..FrequencyFit::default()
     };
     trained::of_deck(DECK, &fit, SPEED_MAX_M_S)

@@ -26,6 +26,12 @@ pub fn near_groups(values: impl IntoIterator<Item = f64>, ratio: f64) -> Vec<Vec
         .collect()
 }
 
+/// So many numbers from one to another, both positive, in equal ratios.
+pub fn in_equal_ratios(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
+    let last = count.max(2) as f64 - 1.0;
+    (0..count).map(move |i| from * (to / from).powf(i as f64 / last))
+}
+
 /// The group of [`near_groups`] that `value` is in, or else the one below it.
 pub fn group_of(groups: &[Vec<f64>], value: f64) -> usize {
     groups.partition_point(|g| g[0] <= value).saturating_sub(1)

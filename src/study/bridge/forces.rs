@@ -7,7 +7,7 @@ use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::error::{Error, Result, ensure};
 use crate::files::bridge::{BridgeSectionBlock, StaticBlock};
 use crate::files::derivatives::{named_table_in, state_angle};
-use crate::identification::{FeedThrough, Form, FrequencyFit};
+use crate::identification::{Form, FrequencyFit};
 use crate::plausibility::{Finding, of_model, of_table};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
@@ -132,7 +132,7 @@ impl SectionForceModels {
                 Error::input(place, "a fit to a table", e.message().replace('\n', " "))
             })?,
             None => FrequencyFit {
-                form: Form::laguerre(block.filters, FeedThrough::default()),
+                form: Form::laguerre(block.filters),
                 ..FrequencyFit::default()
             },
         };

@@ -16,7 +16,7 @@ use crate::files::derivatives::{embedded, is_table_file, named_table_in};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
 use crate::plausibility::{Finding, of_table};
 use crate::section::{Dof, SectionModel, Structure};
-use crate::units::ReducedFrequencyRange;
+use crate::units::{ReducedFrequencyRange, in_equal_ratios};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -345,10 +345,7 @@ impl<'a> Setting<'a> {
         let low = still_air_hz().fold(f64::INFINITY, f64::min);
         let high = still_air_hz().fold(0.0, f64::max);
         let (low, high) = (low * SPECTRUM_REACH.0, high * SPECTRUM_REACH.1);
-        let last = (SPECTRUM_POINTS - 1) as f64;
-        let frequencies = (0..SPECTRUM_POINTS)
-            .map(|i| low * (high / low).powf(i as f64 / last))
-            .collect();
+        let frequencies = in_equal_ratios(low, high, SPECTRUM_POINTS).collect();
         let problem = self.problem(None, at.as_ref())?;
         problem.spectra_over(frequencies, speed, &[0])
     }

@@ -8,7 +8,7 @@ use super::stability::{FEW, turning};
 use crate::aerodynamics::GustComponent;
 use crate::error::{Error, Result};
 use crate::flutter::{impedance, solve_complex};
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, in_equal_ratios};
 use aerodeck_core::threads;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::TAU;
@@ -318,7 +318,7 @@ impl<'a> FrequencyDomain<'a> {
         let hertz = || resonances().map(|r| r.0);
         let lowest = hertz().fold(f64::INFINITY, f64::min) / 100.0;
         let highest = hertz().fold(0.0, f64::max) * REACH;
-        let even = (0..=EVEN).map(|i| lowest * (highest / lowest).powf(i as f64 / EVEN as f64));
+        let even = in_equal_ratios(lowest, highest, EVEN + 1);
         let near = resonances().flat_map(|(f, half)| {
             let part = |i: i32| (f64::from(i) / f64::from(AROUND)).powi(3);
             (-AROUND..=AROUND).map(move |i| f + half.abs() * 10.0 * part(i))

@@ -10,6 +10,7 @@ use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
 use crate::flutter::{impedance, pivots};
 use crate::section::Structure;
+use crate::units::in_equal_ratios;
 use aerodeck_core::threads;
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
@@ -76,13 +77,11 @@ fn frequencies(structure: &Structure) -> Vec<f64> {
     let natural = natural_hz(structure);
     let (low, high) = range(&natural);
     let (first, last) = (low * REACH.0, high * REACH.1);
-    let mut all: Vec<f64> = (0..=GRID)
-        .map(|i| first * (last / first).powf(i as f64 / GRID as f64))
-        .collect();
+    let mut all: Vec<f64> = in_equal_ratios(first, last, GRID + 1).collect();
     if structure.dofs.len() > FEW {
         let (from, to) = (low * FINE_REACH.0, high * FINE_REACH.1);
         let steps = ((to / from).ln() / FINE).ceil();
-        all.extend((0..=steps as usize).map(|i| from * (to / from).powf(i as f64 / steps)));
+        all.extend(in_equal_ratios(from, to, steps as usize + 1));
         all.extend(natural);
     }
     all.sort_by(f64::total_cmp);

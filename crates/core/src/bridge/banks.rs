@@ -5,6 +5,7 @@
 //! between those of the slowest and the fastest wind, spans what they do together up to a remainder that falls with every
 //! filter. The forces count, not each filter: slow winds, of little pressure, and filters of little force may be spanned less well.
 
+use crate::units::in_equal_ratios;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Remainder of the forces over the largest of them up to which one bank stands for those of all winds.
@@ -65,9 +66,7 @@ fn common(family: &[ModalBank]) -> Option<ModalBank> {
     let slowest = poles.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
     let fastest = poles.iter().map(|p| p.0).fold(0.0, f64::max);
     let (low, high) = (slowest * lowest * REACH.0, fastest * rate * REACH.1);
-    let frequencies: Vec<f64> = (0..POINTS)
-        .map(|i| low * (high / low).powf(i as f64 / (POINTS - 1) as f64))
-        .collect();
+    let frequencies: Vec<f64> = in_equal_ratios(low, high, POINTS).collect();
     let of_bank = |bank: &ModalBank| responses(&bank.a, &bank.b, bank.rate, &frequencies);
     let wanted: Vec<_> = family.iter().map(of_bank).collect::<Option<_>>()?;
     let whole = forces(family, &wanted);

@@ -212,7 +212,6 @@ pub(crate) fn index_of(dofs: &[Dof], dof: Dof, place: &str) -> Result<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identification::form::FeedThrough;
 
     /// Value and slope at zero against the columns at ±1e-5: central differences err by the square of that times third
     /// derivatives of up to 1e4.
@@ -220,11 +219,7 @@ mod tests {
     fn slopes_at_zero_are_those_of_the_columns() {
         let step = 1e-5;
         for form in [
-            Form::TakenakaMalmquist {
-                filters: 3,
-                feed_through: FeedThrough::default(),
-                pole_per_transfer_function: false,
-            },
+            Form::takenaka_malmquist(3),
             Form::Rational {
                 lags: 3,
                 added_mass: true,

@@ -104,11 +104,20 @@ impl Default for Form {
 }
 
 impl Form {
-    /// So many filters of one pole for all transfer functions.
-    pub fn laguerre(filters: usize, feed_through: FeedThrough) -> Self {
+    /// So many filters with one pole for all transfer functions, and all feed-through terms.
+    pub fn laguerre(filters: usize) -> Self {
         Self::Laguerre {
             filters: Some(filters),
-            feed_through,
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        }
+    }
+
+    /// The same with a pole for each filter.
+    pub fn takenaka_malmquist(filters: usize) -> Self {
+        Self::TakenakaMalmquist {
+            filters,
+            feed_through: FeedThrough::default(),
             pole_per_transfer_function: false,
         }
     }

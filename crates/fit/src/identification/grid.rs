@@ -280,7 +280,11 @@ impl GridAxis {
 }
 
 fn with_filters(form: &Form, filters: usize) -> Form {
-    Form::laguerre(filters, form.feed_through())
+    Form::Laguerre {
+        filters: Some(filters),
+        feed_through: form.feed_through(),
+        pole_per_transfer_function: false,
+    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::identification::basis::assemble;
 use crate::identification::report::FitReport;
 use crate::section::Dof;
 use crate::trained_model::Model;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, in_equal_ratios};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -313,8 +313,7 @@ impl CoefficientUncertainty {
 
 /// `points` reduced frequencies from one end of a range to the other, logarithmic.
 pub(super) fn spread_over(range: ReducedFrequencyRange, points: usize) -> Vec<ReducedFrequency> {
-    let (low, high) = (range.min.full_width(), range.max.full_width());
-    let last = points.max(2) as f64 - 1.0;
-    let all = (0..points).map(|i| low * (high / low).powf(i as f64 / last));
+    let [low, high] = [range.min, range.max].map(ReducedFrequency::full_width);
+    let all = in_equal_ratios(low, high, points);
     all.map(ReducedFrequency::from_full_width).collect()
 }

@@ -8,7 +8,7 @@ pub use report::{CoverageReport, IntervalCoverage};
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::model::derivative_intervals;
-use super::onset::{OnsetError, onset_error};
+use super::onset::{OnsetError, onset_error, speed_and_omega};
 use super::record_covariance::record_uncertainty;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
@@ -131,10 +131,7 @@ impl<'a> KnownDeck<'a> {
         let Fitted { model, report } = fit_records(&sources, &fit, &|_| ())?;
         let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ())?;
         let section = CoupledSection::with_model(&self.structure, &model)?;
-        let search = OnsetSearch {
-            speed_max_m_s: SPEED_MAX_M_S,
-            ..OnsetSearch::default()
-        };
+        let search = OnsetSearch::up_to(SPEED_MAX_M_S);
         let found = find_onset("", &section, &search, Some(report.tested_range))?;
         Ok((estimate, found.onset().cloned(), report.tested_range))
     }
@@ -176,7 +173,7 @@ impl<'a> KnownDeck<'a> {
         };
         let ratio = estimate.speeds.as_ref().and_then(|s| s.ratio);
         Ok(Some(Repetition {
-            error: onset_error(&estimate, &self.structure, &onset, None)?,
+            error: onset_error(&estimate, &self.structure, speed_and_omega(&onset), None)?,
             derivatives_inside: self.derivatives(&estimate)?,
             speeds_differ: ratio.is_some_and(|r| r > 1.0),
         }))

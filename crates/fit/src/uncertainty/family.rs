@@ -11,7 +11,7 @@ pub use deck::{FamilyPlan, FamilyRange};
 use super::coverage::IntervalCoverage;
 use super::forms::FormEnsemble;
 use super::model::interval_with_forms;
-use super::onset::onset_error;
+use super::onset::{onset_error, speed_and_omega};
 use super::table_covariance::table_uncertainty;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Result, ensure};
@@ -130,10 +130,7 @@ fn judged(number: usize, deck: &SyntheticDeck) -> DeckOutcome {
 impl DeckOutcome {
     fn answer(&mut self, deck: &SyntheticDeck) -> Result<()> {
         let (samples, dofs, fit) = (&deck.samples, &deck.dofs, FrequencyFit::default());
-        let search = OnsetSearch {
-            speed_max_m_s: SEARCHED * deck.truth_m_s,
-            ..OnsetSearch::default()
-        };
+        let search = OnsetSearch::up_to(SEARCHED * deck.truth_m_s);
         let Fitted { model, report } = fit_table(samples, dofs, &fit)?;
         let section = CoupledSection::with_model(&deck.structure, &model)?;
         let found = find_onset("", &section, &search, Some(report.tested_range))?;
@@ -142,7 +139,7 @@ impl DeckOutcome {
         match found {
             FlutterSearch::Onset(onset) => {
                 let estimate = table_uncertainty(samples, dofs, &fit, &report, None)?;
-                let error = onset_error(&estimate, &deck.structure, &onset, None)?;
+                let error = onset_error(&estimate, &deck.structure, speed_and_omega(&onset), None)?;
                 self.onset_m_s = Some(onset.at.speed_m_s);
                 let interval = interval_with_forms(&error, &[spread]);
                 let parts = interval.by_error().map(|error| error.parts);

@@ -16,13 +16,13 @@ use crate::error::{Error, Result, counted};
 use crate::flutter::{FlutterSearch, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::{
-    Constraints, EntryReport, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights,
-    PoleSearch, fit_table,
+    Constraints, EntryReport, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch,
+    fit_table,
 };
 use crate::section::{Dof, Structure};
 use crate::signal::mean_and_deviation;
 use crate::trained_model::Model;
-use crate::units::ReducedFrequencyRange;
+use crate::units::{ReducedFrequencyRange, in_equal_ratios};
 use crate::wind_tunnel::RecordSource;
 use aerodeck_core::threads;
 use serde::{Deserialize, Serialize};
@@ -270,13 +270,8 @@ fn fitted_forms(tested: ReducedFrequencyRange) -> Vec<(String, FrequencyFit)> {
     let ends = [tested.min.full_width(), tested.max.full_width()];
     let bank = |count: usize, reach: [f64; 2]| {
         let (low, high) = (reach[0] * ends[0], reach[1] * ends[1]);
-        let pole = |i: usize| low * (high / low).powf(i as f64 / (count as f64 - 1.0));
-        let poles: Vec<f64> = (0..count).map(pole).collect();
-        let form = Form::TakenakaMalmquist {
-            filters: count,
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        };
+        let poles: Vec<f64> = in_equal_ratios(low, high, count).collect();
+        let form = Form::takenaka_malmquist(count);
         let name = format!("{count} poles from K {low:.3} to {high:.2}");
         (name, form, PoleSearch::fixed(&poles))
     };

@@ -4,6 +4,7 @@ use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::forms::{FormEnsemble, FormSpread};
 use super::onset::{
     CONFIDENCE, OnsetError, ResampledOnset, Resampling, onset_error, resample_onset,
+    speed_and_omega,
 };
 use super::speed_onsets::{Contradiction, SpeedOnsets, speed_onsets};
 use super::statistics::two_sided_quantile;
@@ -71,7 +72,7 @@ impl ModelUncertainty {
         let own = &uncertainty.coefficients;
         let resampled =
             |by| resample_onset(own, structure, onset, by, REPLICATES, &search, Some(tested));
-        uncertainty.onset = Some(onset_error(own, structure, onset, None)?);
+        uncertainty.onset = Some(onset_error(own, structure, speed_and_omega(onset), None)?);
         uncertainty.block_bootstrap = resampled(Resampling::Blocks)?;
         uncertainty.drawn_coefficients = resampled(Resampling::Normal)?;
         uncertainty.speeds = speed_onsets(own, structure, onset, &search, tested)?;
@@ -160,7 +161,7 @@ impl ModelUncertainty {
             return Ok(OnsetInterval::none(why));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
-        let error = onset_error(&self.coefficients, structure, onset, known)?;
+        let error = onset_error(&self.coefficients, structure, speed_and_omega(onset), known)?;
         if let Some(bias) = self.coefficients.known_bias() {
             let alone = error.standard_error_m_s;
             let why = format!("{bias} (standard error of the scatter alone {alone:.3} m/s)");

@@ -48,31 +48,24 @@ pub struct OnsetError {
     pub between_speeds: Option<BetweenSpeeds>,
 }
 
-/// Standard error of an onset by the delta method, `√(gᵀ C g)` with the gradient `g` of the onset speed.
+/// Speed (m/s) and circular frequency of an onset.
+pub(super) fn speed_and_omega(onset: &Onset) -> [f64; 2] {
+    [onset.at.speed_m_s, TAU * onset.at.frequency_hz]
+}
+
+/// Standard error of the onset at a speed and circular frequency by the delta method, `√(gᵀ C g)` with the gradient `g` of its speed.
 ///
 /// `degrees_of_freedom` stands in where the estimate no longer knows its data.
 pub(crate) fn onset_error(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
-    onset: &Onset,
+    at: [f64; 2],
     degrees_of_freedom: Option<f64>,
 ) -> Result<OnsetError> {
-    let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-    error_at(estimate, structure, speed_m_s, omega, degrees_of_freedom)
-}
-
-/// The same for an onset at a speed and circular frequency.
-pub(super) fn error_at(
-    estimate: &CoefficientUncertainty,
-    structure: &Structure,
-    speed_m_s: f64,
-    omega: f64,
-    degrees_of_freedom: Option<f64>,
-) -> Result<OnsetError> {
-    let gradient = onset_gradient(estimate, structure, speed_m_s, omega)?;
+    let gradient = onset_gradient(estimate, structure, at)?;
     let known = estimate.degrees_of_freedom(&gradient);
     Ok(OnsetError {
-        speed_m_s,
+        speed_m_s: at[0],
         standard_error_m_s: estimate.standard_error(&gradient)?,
         degrees_of_freedom: known.or(degrees_of_freedom).unwrap_or(1.0),
         between_speeds: estimate.speeds.as_ref().map(|s| s.source),
@@ -130,7 +123,7 @@ pub(crate) fn resample_onset(
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<Option<ResampledOnset>> {
     let draws = ModelDraws::new(estimate)?;
-    let near = [onset.at.speed_m_s, TAU * onset.at.frequency_hz];
+    let near = speed_and_omega(onset);
     let onset_of = |r: usize| -> Result<Option<Option<f64>>> {
         let Some(values) = drawn(estimate, &draws, resampling, r)? else {
             return Ok(None);
@@ -202,8 +195,7 @@ fn section_at(
 pub(crate) fn onset_gradient(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
-    speed_m_s: f64,
-    omega: f64,
+    [speed_m_s, omega]: [f64; 2],
 ) -> Result<Vec<f64>> {
     let values = estimate.values();
     let section = section_at(structure, estimate, &values)?;

@@ -1,7 +1,9 @@
 //! What the tests at each mean speed say of the onset alone, and whether they contradict each other.
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
-use super::onset::{CONFIDENCE, OnsetError, error_at, followed, onset_gradient};
+use super::onset::{
+    CONFIDENCE, OnsetError, followed, onset_error, onset_gradient, speed_and_omega,
+};
 use super::statistics::two_sided_quantile;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
@@ -10,7 +12,6 @@ use crate::flutter::{Onset, OnsetSearch};
 use crate::section::{Dof, Structure};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// Reduced frequencies at which the transfer functions of two speeds are compared.
 const POINTS: usize = 16;
@@ -73,8 +74,7 @@ pub(crate) fn speed_onsets(
     tested: ReducedFrequencyRange,
 ) -> Result<SpeedOnsets> {
     let own = |own: &CoefficientUncertainty| own_onset(own, structure, onset, search, tested);
-    let (speed_m_s, omega) = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-    let slopes = || onset_gradient(estimate, structure, speed_m_s, omega);
+    let slopes = || onset_gradient(estimate, structure, speed_and_omega(onset));
     speed_onsets_by(estimate, tested, own, slopes)
 }
 
@@ -145,11 +145,9 @@ fn own_onset(
 ) -> Result<OnsetError> {
     let model = own.model_at(&own.values())?;
     let section = CoupledSection::with_model(structure, &model)?;
-    let near = [onset.at.speed_m_s, TAU * onset.at.frequency_hz];
-    let found = followed(&section, near, search, Some(tested))?;
+    let found = followed(&section, speed_and_omega(onset), search, Some(tested))?;
     let none = || Error::Numerical(format!("no onset up to {} m/s", search.speed_max_m_s));
-    let [speed_m_s, omega] = found.ok_or_else(none)?;
-    error_at(own, structure, speed_m_s, omega, None)
+    onset_error(own, structure, found.ok_or_else(none)?, None)
 }
 
 /// Difference over its standard error, and the limit beyond which it is no chance.

@@ -4,7 +4,7 @@ mod between_speeds;
 mod growth_limit;
 mod own_filters;
 
-use super::onset::{onset_error, onset_gradient, resample_onset};
+use super::onset::{onset_error, onset_gradient, resample_onset, speed_and_omega};
 use super::*;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::{FlatPlate, RationalModel};
@@ -40,11 +40,7 @@ fn onset_within(model: &Model, tested: Option<ReducedFrequencyRange>) -> Onset {
 
 fn two_poles(poles: PoleSearch) -> FrequencyFit {
     FrequencyFit {
-        form: Form::TakenakaMalmquist {
-            filters: 2,
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        },
+        form: Form::takenaka_malmquist(2),
         poles,
         weights: FrequencyWeights::Relative,
         ..FrequencyFit::default()
@@ -111,8 +107,7 @@ fn gradients_are_differences_of_onsets() {
     let discrete = discrete_uncertainty(&sources, &fit, &model, None, &|_| ()).unwrap();
     for (model, estimate) in [continuous, (model, discrete)] {
         let at = onset(&model);
-        let omega = std::f64::consts::TAU * at.at.frequency_hz;
-        let gradient = onset_gradient(&estimate, &structure(), at.at.speed_m_s, omega).unwrap();
+        let gradient = onset_gradient(&estimate, &structure(), speed_and_omega(&at)).unwrap();
         let values = estimate.values();
         let largest = gradient.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
         for (p, g) in gradient.iter().enumerate() {
@@ -156,7 +151,8 @@ fn stated_errors_are_the_scatter_of_repeated_tables() {
             let (model, estimate) = fitted(&scattered(seed), &fit);
             let found = onset(&model);
             let estimate = by_blocks(estimate);
-            let error = onset_error(&estimate, &structure(), &found, None).unwrap();
+            let error =
+                onset_error(&estimate, &structure(), speed_and_omega(&found), None).unwrap();
             speeds.push(found.at.speed_m_s);
             stated += error.standard_error_m_s.powi(2) / runs as f64;
         }
@@ -173,7 +169,7 @@ fn stated_errors_are_the_scatter_of_repeated_tables() {
 fn three_routes_give_one_standard_error() {
     let (model, estimate) = fitted(&scattered(3), &two_poles(PoleSearch::fixed(&[0.091, 0.6])));
     let at = onset(&model);
-    let error = onset_error(&estimate, &structure(), &at, None).unwrap();
+    let error = onset_error(&estimate, &structure(), speed_and_omega(&at), None).unwrap();
     let draw = |resampling, replicates| {
         let search = OnsetSearch::default();
         let drawn = resample_onset(
@@ -248,7 +244,7 @@ fn uncertainties_that_make_no_model_are_refused() {
         let mut file: serde_json::Value = serde_json::from_str(&whole).unwrap();
         *file.pointer_mut(place).expect(place) = value;
         let read = ModelUncertainty::from_json(&file.to_string());
-        read.err().expect(place).to_string()
+        read.expect_err(place).to_string()
     };
     let own = |key: &str| format!("/coefficients/{key}");
     for (place, value, expected) in [

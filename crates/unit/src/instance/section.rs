@@ -140,10 +140,7 @@ fn search_up_to(section: &CoupledSection, limit: f64) -> Result<OnsetSearch> {
         format_args!("at most {SEARCHED_STATES} states"),
         states,
     )?;
-    Ok(OnsetSearch {
-        speed_max_m_s: limit,
-        ..OnsetSearch::default()
-    })
+    Ok(OnsetSearch::up_to(limit))
 }
 
 /// Why damping is not known in wind slower than every test of a model; no parameter of the section changes it.

@@ -8,8 +8,8 @@ use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::identification::{
-    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit,
-    fit_discrete, fit_records, fit_table,
+    Constraints, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit, fit_discrete,
+    fit_records, fit_table,
 };
 use crate::numbered::{OnDone, numbered};
 use crate::section::Dof;
@@ -154,7 +154,7 @@ impl ComparedModel {
 /// This program's fit with the filters of the thesis: left to the data there would be more of them.
 fn with_feed_through() -> TimeFit {
     TimeFit {
-        form: Form::laguerre(THESIS_FILTERS, FeedThrough::default()),
+        form: Form::laguerre(THESIS_FILTERS),
         ..TimeFit::default()
     }
 }

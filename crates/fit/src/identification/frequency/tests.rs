@@ -16,14 +16,6 @@ fn flat_plate() -> Vec<TransferSample> {
     sample_model(&FlatPlate::default(), &eight_k(8.17)).unwrap()
 }
 
-fn laguerre(filters: usize) -> Form {
-    Form::Laguerre {
-        filters: Some(filters),
-        feed_through: FeedThrough::default(),
-        pole_per_transfer_function: false,
-    }
-}
-
 fn rational(lags: usize, added_mass: bool) -> FrequencyFit {
     FrequencyFit {
         form: Form::Rational { lags, added_mass },
@@ -93,7 +85,7 @@ fn assert_same(a: &Model, b: &Model) {
 #[test]
 fn one_laguerre_filter_is_one_lag() {
     let fit = FrequencyFit {
-        form: laguerre(1),
+        form: Form::laguerre(1),
         ..table_alone()
     };
     let a = fit_table(&flat_plate(), &Dof::TWO, &fit).unwrap().model;
@@ -111,11 +103,7 @@ fn takenaka_malmquist_filters_are_lags() {
         (2, PoleSearch::fixed(&[0.149, 0.538])),
         (3, PoleSearch::fixed(&[0.1, 0.3, 0.9])),
     ] {
-        let form = Form::TakenakaMalmquist {
-            filters: n,
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        };
+        let form = Form::takenaka_malmquist(n);
         let with = |form: Form| FrequencyFit {
             form,
             poles: poles.clone(),
@@ -189,7 +177,7 @@ fn own_poles_fit_at_least_as_well() {
         ..table_alone()
     };
     let shared = FrequencyFit {
-        form: laguerre(2),
+        form: Form::laguerre(2),
         ..table_alone()
     };
     let Fitted { model, report: a } = fit_table(&flat_plate(), &Dof::TWO, &own).unwrap();
@@ -208,7 +196,7 @@ fn own_poles_fit_at_least_as_well() {
 #[test]
 fn standard_errors_are_the_scatter_of_repeated_fits() {
     let fit = FrequencyFit {
-        form: laguerre(1),
+        form: Form::laguerre(1),
         poles: PoleSearch::fixed(&[0.3]),
         weights: FrequencyWeights::None,
         ..table_alone()
@@ -287,7 +275,7 @@ fn impossible_options_are_refused_by_key() {
             .to_string()
     };
     let none = FrequencyFit {
-        form: laguerre(0),
+        form: Form::laguerre(0),
         ..table_alone()
     };
     assert_eq!(
@@ -300,7 +288,7 @@ fn impossible_options_are_refused_by_key() {
     };
     assert!(message(wrong_count).starts_with("poles.fixed: expected 2 numbers"));
     let many = FrequencyFit {
-        form: laguerre(14),
+        form: Form::laguerre(14),
         ..table_alone()
     };
     assert!(message(many).contains("at least 17 numbers for 17 coefficients"));

@@ -4,9 +4,7 @@ use super::*;
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::identification::sources;
 use crate::identification::testing::{records, records_alone};
-use crate::identification::{
-    DiscreteFit, FeedThrough, Fitted, PoleSearch, fit_discrete, fit_records,
-};
+use crate::identification::{DiscreteFit, Fitted, PoleSearch, fit_discrete, fit_records};
 use crate::units::ReducedFrequency;
 
 fn differ(a: &Model, b: &Model) -> f64 {
@@ -55,11 +53,7 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
     let grid = Grid::new(&sources, axis, 3, &|_| ()).unwrap();
     let cell = grid.fits(0, &|_| true).pop().unwrap().unwrap();
     let fit = TimeFit {
-        form: Form::Laguerre {
-            filters: Some(3),
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        },
+        form: Form::laguerre(3),
         poles: PoleSearch::fixed(&[0.3]),
         ..records_alone()
     };

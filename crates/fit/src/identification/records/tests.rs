@@ -186,11 +186,7 @@ fn noise_of_five_per_cent() {
 fn too_many_filters_are_counted() {
     let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let fit = TimeFit {
-        form: Form::Laguerre {
-            filters: Some(40),
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        },
+        form: Form::laguerre(40),
         ..TimeFit::default()
     };
     let message = fit_records(&sources(&all), &fit, &quiet)

@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::files::derivatives::embedded;
-use crate::identification::form::{FeedThrough, Form};
+use crate::identification::form::Form;
 use crate::identification::testing::{onset_above, onset_m_s, table_alone};
 use crate::identification::{Fitted, FrequencyFit, FrequencyWeights, fit_table};
 use crate::section::Dof;
@@ -68,11 +68,7 @@ fn default_model_on_every_deck() {
 fn overfit_of_ln21_5500_is_said() {
     let table = embedded::deck("LN21-5500").unwrap();
     let four = FrequencyFit {
-        form: Form::Laguerre {
-            filters: Some(4),
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        },
+        form: Form::laguerre(4),
         ..table_alone()
     };
     let report = fit(&table, &four).report;

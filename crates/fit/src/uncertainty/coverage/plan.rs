@@ -1,7 +1,7 @@
 //! A virtual campaign that is repeated.
 
 use crate::error::{Result, ensure, non_negative, positive};
-use crate::identification::{Constraints, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
+use crate::identification::{Constraints, Form, PoleSearch, TimeFit, TimeWeights};
 use crate::wind_tunnel::TunnelPlan;
 use serde::{Deserialize, Serialize};
 
@@ -84,11 +84,7 @@ impl CoveragePlan {
         TimeFit {
             // −(e₁ + e₁ᵀ) of a flat plate is singular: the truth lies on a constraint, which would bind now and then
             constraints: Constraints::None,
-            form: Form::TakenakaMalmquist {
-                filters: self.poles.len(),
-                feed_through: FeedThrough::default(),
-                pole_per_transfer_function: false,
-            },
+            form: Form::takenaka_malmquist(self.poles.len()),
             poles: match self.search_poles {
                 true => given,
                 false => PoleSearch::fixed(&self.poles),

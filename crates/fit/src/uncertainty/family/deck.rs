@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetSearch, find_onset};
 use crate::section::{Dof, Rotation, SectionModel, Structure, Translation};
 use crate::signal::random_stream;
-use crate::units::ReducedFrequency;
+use crate::units::{ReducedFrequency, in_equal_ratios};
 use nalgebra::{Complex, DMatrix};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -91,10 +91,6 @@ impl FamilyRange {
     /// `count` tested `K` for an onset at `k`, rising.
     fn tested(self, k: f64, count: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
         let mut between = |low: f64, high: f64| random.random_range(low..high);
-        let spread = |low: f64, high: f64, count: usize| {
-            let last = count.max(2) as f64 - 1.0;
-            (0..count).map(move |i| low * (high / low).powf(i as f64 / last))
-        };
         let (low, high) = match self {
             Self::Normal | Self::All => (k / between(1.6, 2.5), k * between(2.5, 5.0)),
             Self::Edge if between(0.0, 1.0) < 0.5 => {
@@ -108,12 +104,12 @@ impl FamilyRange {
                 let from = k / f64::powf(ratio, between(0.3, 0.7));
                 let below = (count / 2).max(2);
                 let ends = (from / between(2.0, 3.0), from * ratio * between(2.0, 3.0));
-                let lower = spread(ends.0, from, below);
-                let upper = spread(from * ratio, ends.1, count - below);
+                let lower = in_equal_ratios(ends.0, from, below);
+                let upper = in_equal_ratios(from * ratio, ends.1, count - below);
                 return lower.chain(upper).collect();
             }
         };
-        spread(low, high, count).collect()
+        in_equal_ratios(low, high, count).collect()
     }
 }
 
@@ -263,10 +259,7 @@ fn onset(
     highest_m_s: f64,
 ) -> Result<Option<(f64, f64)>> {
     let section = CoupledSection::with_model(structure, truth)?;
-    let search = OnsetSearch {
-        speed_max_m_s: highest_m_s / SEARCHED,
-        ..OnsetSearch::default()
-    };
+    let search = OnsetSearch::up_to(highest_m_s / SEARCHED);
     Ok(match find_onset("truth", &section, &search, None)? {
         FlutterSearch::Onset(o) => Some((o.at.speed_m_s, o.at.reduced_frequency.full_width())),
         FlutterSearch::UnstableAtOrBelow(_) | FlutterSearch::StableUpTo(_) => None,

@@ -4,8 +4,8 @@ use super::distribution::Distribution;
 use crate::error::{Error, Result, ensure, of_schema, positive};
 use crate::files::toml_lines;
 use crate::plausibility::{Finding, FindingKind, of_section};
-use crate::section::{SectionModel, Translation};
-use serde::{Deserialize, Serialize};
+use crate::section::SectionModel;
+use serde::Deserialize;
 use std::path::PathBuf;
 
 /// Version of the file.
@@ -156,13 +156,13 @@ impl MonteCarloPlan {
         let (mut means, mut found) = (section.clone(), Vec::new());
         for random in &self.parameters {
             let key = random.name.name();
-            let own = random.name.nominal(&key, section)?;
+            let own = random.name.nominal(key, section)?;
             let mean = random.distribution.mean(own);
             if let Some(place) = random.name.place(&mut means) {
                 *place = mean;
             }
-            let offset = [SectionProperty::AxisOffset, SectionProperty::MassOffset];
-            if own > 0.0 && !(0.5..=2.0).contains(&(mean / own)) && !offset.contains(&random.name) {
+            let offset = key.ends_with("_offset_m");
+            if own > 0.0 && !(0.5..=2.0).contains(&(mean / own)) && !offset {
                 let text = format!("the mean of its distribution, where the model has {own}");
                 let doubt = Finding::doubt(FindingKind::Contradiction, key, text);
                 let value = Some(mean);
@@ -227,86 +227,56 @@ impl AerodynamicScatter {
 }
 
 /// A number of the section that may be random, by the name it has in a study file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum SectionProperty {
-    /// Deck width, m.
-    #[serde(rename = "width_m")]
-    Width,
-    /// Air density, kg/m³.
-    #[serde(rename = "air_density_kg_m3")]
-    AirDensity,
-    /// Distance of the axis from the reference point of the forces, m.
-    #[serde(rename = "axis_offset_m")]
-    AxisOffset,
-    /// Distance of the centre of mass from the axis, m.
-    #[serde(rename = "mass_offset_m")]
-    MassOffset,
-    /// Mass of the vertical motion, kg/m.
-    #[serde(rename = "vertical.mass_kg_m")]
-    VerticalMass,
-    /// Natural frequency of the vertical motion, Hz; the stiffness follows from it and the mass.
-    #[serde(rename = "vertical.frequency_hz")]
-    VerticalFrequency,
-    /// Stiffness of the vertical motion, N/m².
-    #[serde(rename = "vertical.stiffness_n_m2")]
-    VerticalStiffness,
-    /// Damping ratio of the vertical motion.
-    #[serde(rename = "vertical.damping_ratio")]
-    VerticalDamping,
-    /// Mass of the lateral motion, kg/m.
-    #[serde(rename = "lateral.mass_kg_m")]
-    LateralMass,
-    /// Natural frequency of the lateral motion, Hz.
-    #[serde(rename = "lateral.frequency_hz")]
-    LateralFrequency,
-    /// Stiffness of the lateral motion, N/m².
-    #[serde(rename = "lateral.stiffness_n_m2")]
-    LateralStiffness,
-    /// Damping ratio of the lateral motion.
-    #[serde(rename = "lateral.damping_ratio")]
-    LateralDamping,
-    /// Mass moment of inertia, kg·m²/m.
-    #[serde(rename = "torsion.inertia_kg_m2_m")]
-    Inertia,
-    /// Natural frequency of the rotation, Hz.
-    #[serde(rename = "torsion.frequency_hz")]
-    TorsionFrequency,
-    /// Stiffness of the rotation, N·m/(rad·m).
-    #[serde(rename = "torsion.stiffness_n")]
-    TorsionStiffness,
-    /// Damping ratio of the rotation.
-    #[serde(rename = "torsion.damping_ratio")]
-    TorsionDamping,
-}
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+pub struct SectionProperty(usize);
+
+/// Where a number stands; none where the section states it otherwise (a stiffness instead of a frequency) or has no such support.
+type Place = fn(&mut SectionModel) -> Option<&mut f64>;
+
+/// All of them.
+const PROPERTIES: [(&str, Place); 16] = [
+    ("width_m", |s| Some(&mut s.width_m)),
+    ("air_density_kg_m3", |s| Some(&mut s.air_density_kg_m3)),
+    ("axis_offset_m", |s| s.axis_offset_m.as_mut()),
+    ("mass_offset_m", |s| s.mass_offset_m.as_mut()),
+    ("vertical.mass_kg_m", |s| Some(&mut s.vertical.mass_kg_m)),
+    ("vertical.frequency_hz", |s| {
+        s.vertical.frequency_hz.as_mut()
+    }),
+    ("vertical.stiffness_n_m2", |s| {
+        s.vertical.stiffness_n_m2.as_mut()
+    }),
+    ("vertical.damping_ratio", |s| {
+        Some(&mut s.vertical.damping_ratio)
+    }),
+    ("lateral.mass_kg_m", |s| {
+        Some(&mut s.lateral.as_mut()?.mass_kg_m)
+    }),
+    ("lateral.frequency_hz", |s| {
+        s.lateral.as_mut()?.frequency_hz.as_mut()
+    }),
+    ("lateral.stiffness_n_m2", |s| {
+        s.lateral.as_mut()?.stiffness_n_m2.as_mut()
+    }),
+    ("lateral.damping_ratio", |s| {
+        Some(&mut s.lateral.as_mut()?.damping_ratio)
+    }),
+    ("torsion.inertia_kg_m2_m", |s| {
+        Some(&mut s.torsion.inertia_kg_m2_m)
+    }),
+    ("torsion.frequency_hz", |s| s.torsion.frequency_hz.as_mut()),
+    ("torsion.stiffness_n", |s| s.torsion.stiffness_n.as_mut()),
+    ("torsion.damping_ratio", |s| {
+        Some(&mut s.torsion.damping_ratio)
+    }),
+];
 
 impl SectionProperty {
     /// Where the number stands; `None` when the section states it otherwise (a stiffness instead of a frequency) or has
     /// no such support.
     pub fn place(self, section: &mut SectionModel) -> Option<&mut f64> {
-        fn frequency(t: &mut Translation) -> Option<&mut f64> {
-            t.frequency_hz.as_mut()
-        }
-        fn stiffness(t: &mut Translation) -> Option<&mut f64> {
-            t.stiffness_n_m2.as_mut()
-        }
-        match self {
-            Self::Width => Some(&mut section.width_m),
-            Self::AirDensity => Some(&mut section.air_density_kg_m3),
-            Self::AxisOffset => section.axis_offset_m.as_mut(),
-            Self::MassOffset => section.mass_offset_m.as_mut(),
-            Self::VerticalMass => Some(&mut section.vertical.mass_kg_m),
-            Self::VerticalFrequency => frequency(&mut section.vertical),
-            Self::VerticalStiffness => stiffness(&mut section.vertical),
-            Self::VerticalDamping => Some(&mut section.vertical.damping_ratio),
-            Self::LateralMass => section.lateral.as_mut().map(|t| &mut t.mass_kg_m),
-            Self::LateralFrequency => section.lateral.as_mut().and_then(frequency),
-            Self::LateralStiffness => section.lateral.as_mut().and_then(stiffness),
-            Self::LateralDamping => section.lateral.as_mut().map(|t| &mut t.damping_ratio),
-            Self::Inertia => Some(&mut section.torsion.inertia_kg_m2_m),
-            Self::TorsionFrequency => section.torsion.frequency_hz.as_mut(),
-            Self::TorsionStiffness => section.torsion.stiffness_n.as_mut(),
-            Self::TorsionDamping => Some(&mut section.torsion.damping_ratio),
-        }
+        PROPERTIES[self.0].1(section)
     }
 
     /// The value in `section`.
@@ -326,17 +296,23 @@ impl SectionProperty {
     /// # Errors
     /// [`Error::Input`] for a name that none has.
     pub fn named(name: &str) -> Result<Self> {
-        serde_json::from_value(name.into()).map_err(|_| {
+        let place = PROPERTIES.iter().position(|(own, _)| *own == name);
+        place.map(Self).ok_or_else(|| {
             let expected = "a number of the section, such as vertical.mass_kg_m";
             Error::input("parameter", expected, format!("`{name}`"))
         })
     }
 
     /// The name in files.
-    pub(crate) fn name(self) -> String {
-        match serde_json::to_value(self) {
-            Ok(serde_json::Value::String(name)) => name,
-            _ => String::new(),
-        }
+    pub(crate) fn name(self) -> &'static str {
+        PROPERTIES[self.0].0
+    }
+}
+
+impl TryFrom<String> for SectionProperty {
+    type Error = Error;
+
+    fn try_from(name: String) -> Result<Self> {
+        Self::named(&name)
     }
 }

@@ -71,7 +71,8 @@ fn intervals_hold_a_truth_that_differs_between_speeds() {
         for seed in 0..count {
             let (model, estimate) = fitted(&samples(seed), &fit);
             let found = onset(&model);
-            let error = onset_error(&estimate, &structure(), &found, None).unwrap();
+            let error =
+                onset_error(&estimate, &structure(), speed_and_omega(&found), None).unwrap();
             held += usize::from((found.at.speed_m_s - truth).abs() <= error.half_width_m_s());
             ratio += estimate.speeds.unwrap().ratio.unwrap() / count as f64;
         }
@@ -129,7 +130,7 @@ fn the_prior_of_four_decks_serves_the_fifth() {
         let estimate = table_uncertainty(samples, &Dof::TWO, fit, &report, Some(name)).unwrap();
         let tested = estimate.tested_range().unwrap();
         let at = onset_within(&model, Some(tested));
-        onset_error(&estimate, &structure, &at, None).unwrap()
+        onset_error(&estimate, &structure, speed_and_omega(&at), None).unwrap()
     };
     let (mut halves, mut squares, mut held, mut all) = (Vec::new(), 0.0, 0, 0);
     for constraints in [Constraints::None, Constraints::Dissipative] {
@@ -217,7 +218,13 @@ fn small_couplings_do_not_widen_intervals() {
         let section = CoupledSection::with_model(&structure, &model).unwrap();
         let search = OnsetSearch::default();
         let found = find_onset("", &section, &search, estimate.tested_range()).unwrap();
-        let error = onset_error(&estimate, &structure, found.onset().unwrap(), None).unwrap();
+        let error = onset_error(
+            &estimate,
+            &structure,
+            speed_and_omega(found.onset().unwrap()),
+            None,
+        )
+        .unwrap();
         error.half_width_m_s()
     };
     let halves = [1.0, 1e-2, 1e-4].map(half);

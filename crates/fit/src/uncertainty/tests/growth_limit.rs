@@ -8,11 +8,7 @@ use crate::identification::{ActiveConstraint, FitReport};
 const DECK: &str = "LN21-5500";
 
 fn form() -> Form {
-    Form::Laguerre {
-        filters: Some(5),
-        feed_through: FeedThrough::default(),
-        pole_per_transfer_function: false,
-    }
+    Form::laguerre(5)
 }
 
 fn fit(constraints: Constraints, poles: PoleSearch) -> (FitReport, CoefficientUncertainty) {

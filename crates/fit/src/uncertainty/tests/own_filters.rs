@@ -5,14 +5,6 @@ use super::*;
 use crate::identification::{OwnFilters, TimeFit, fit_records};
 use crate::wind_tunnel::Record;
 
-fn laguerre(filters: usize) -> Form {
-    Form::Laguerre {
-        filters: Some(filters),
-        feed_through: FeedThrough::default(),
-        pole_per_transfer_function: false,
-    }
-}
-
 pub(super) fn own(
     force: Dof,
     motion: Dof,
@@ -41,7 +33,7 @@ fn kinds() -> Vec<Vec<OwnFilters>> {
 fn error_of(model: &Model, estimate: &CoefficientUncertainty) -> f64 {
     let k = ReducedFrequency::from_full_width(0.7);
     assert!(estimate.makes(model, k).unwrap());
-    let error = onset_error(estimate, &structure(), &onset(model), None).unwrap();
+    let error = onset_error(estimate, &structure(), speed_and_omega(&onset(model)), None).unwrap();
     error.standard_error_m_s
 }
 
@@ -59,7 +51,7 @@ fn parameters_of_own_filters_make_the_model_of_a_table() {
         error_of(&model, &estimate)
     };
     for own in kinds() {
-        assert!(error(laguerre(3), None, own).is_normal());
+        assert!(error(Form::laguerre(3), None, own).is_normal());
     }
     let (y, t) = (Dof::Vertical, Dof::Torsion);
     let known: Option<&[f64]> = Some(&[0.4]);
@@ -75,7 +67,7 @@ fn parameters_of_own_filters_make_the_model_of_a_table() {
     ];
     for (pole, own) in same {
         let form = match pole {
-            Some(_) => laguerre(3),
+            Some(_) => Form::laguerre(3),
             None => Form::Laguerre {
                 filters: Some(3),
                 feed_through: FeedThrough::default(),
@@ -85,7 +77,7 @@ fn parameters_of_own_filters_make_the_model_of_a_table() {
         let poles = pole.map(|p| [p]);
         let poles = poles.as_ref().map(<[f64; 1]>::as_slice);
         let (a, b) = (
-            error(laguerre(3), poles, own),
+            error(Form::laguerre(3), poles, own),
             error(form, poles, Vec::new()),
         );
         assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
@@ -106,7 +98,7 @@ fn parameters_of_own_filters_make_the_model_of_records() {
     let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
     let error = |own: Vec<OwnFilters>| {
         let fit = TimeFit {
-            form: laguerre(3),
+            form: Form::laguerre(3),
             own,
             ..TimeFit::default()
         };

@@ -83,18 +83,3 @@ impl Convention {
         }
     }
 }
-
-impl ExpressedTable {
-    /// The table in the crate's convention.
-    ///
-    /// # Errors
-    /// As [`DerivativeTable::new`].
-    pub fn to_table(&self) -> crate::Result<DerivativeTable> {
-        let of_one = |d: &ExpressedDerivative| {
-            let read = |p| self.convention.read_point(d.derivative, p);
-            (d.derivative, d.points.iter().map(read).collect())
-        };
-        let points = self.derivatives.iter().map(of_one).collect();
-        DerivativeTable::new(self.name.clone(), self.width_m, self.header.clone(), points)
-    }
-}

@@ -85,11 +85,7 @@ fn constrained_fit_is_that_of_lapack() {
 #[test]
 fn every_form_meets_the_limits() {
     let forms = [
-        Form::Laguerre {
-            filters: Some(3),
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
-        },
+        Form::laguerre(3),
         Form::TakenakaMalmquist {
             filters: 2,
             feed_through: FeedThrough::default(),
