@@ -16,9 +16,14 @@ const PART_BYTES_AT_MOST: u64 = 64 << 20;
 const BYTES_AT_MOST: u64 = 256 << 20;
 /// Bytes of a workbook in the old format, which is not packed.
 const OLD_BYTES_AT_MOST: u64 = 64 << 20;
+/// Where the header of such a workbook lists the sectors that hold the chains, and how many it has room for.
+const FIRST_LISTED: usize = 76;
+const LISTED_IN_HEADER: usize = 109;
 /// Cells with a content in one sheet: 18 derivatives at more than ten thousand points.
 const CELLS_AT_MOST: usize = 200_000;
 
+/// What is read here.
+const EXPECTED: &str = "a workbook (.xlsx, .xls, .ods)";
 /// What a cell holds whose formula nobody evaluated: no number, so that it is refused where one is read, and no empty cell.
 const NO_VALUE: &str = "a formula without a value: save the workbook once in a spreadsheet";
 /// The same of a date, as of 1.3 that a spreadsheet took for the first of March.
@@ -103,6 +108,7 @@ pub(super) fn open(path: &Path) -> Result<OpenWorkbook> {
     if ending.eq_ignore_ascii_case("xls") {
         let size = file.metadata().map_err(|e| Error::io(path, e))?.len();
         check_mebibytes("a workbook", size, OLD_BYTES_AT_MOST)?;
+        check_chains(&std::fs::read(path).map_err(|e| Error::io(path, e))?)?;
     } else {
         check_size(file)?;
     }
@@ -179,7 +185,37 @@ fn index(i: usize) -> u32 {
 }
 
 pub(super) fn no_workbook(error: &dyn std::fmt::Display) -> Error {
-    Error::input("", "a workbook (.xlsx, .xls, .ods)", error.to_string())
+    Error::input("", EXPECTED, error.to_string())
+}
+
+/// Refuses a workbook of the old format (\[MS-CFB\], section 2.3) in which the chain of a part runs in a circle: its reader would follow it until
+/// the memory is full. The sectors of chains that a header has no room for, of files beyond 7 MB, are not looked at.
+fn check_chains(bytes: &[u8]) -> Result<()> {
+    let number = |at: usize| {
+        let own = bytes.get(at..)?.first_chunk()?;
+        usize::try_from(u32::from_le_bytes(*own)).ok()
+    };
+    // 512 bytes, or what the version of large files has
+    let sector = if bytes.get(30) == Some(&12) {
+        4096
+    } else {
+        512
+    };
+    let of_sector = |id: usize| (0..sector / 4).map(move |i| (id + 1) * sector + 4 * i);
+    let listed = (0..LISTED_IN_HEADER).map_while(|i| number(FIRST_LISTED + 4 * i));
+    let next = listed.filter(|id| *id <= bytes.len() / sector);
+    let next: Vec<usize> = next.flat_map(of_sector).map_while(number).collect();
+    let mut walked_from = vec![usize::MAX; next.len()];
+    for start in 0..next.len() {
+        let mut at = start;
+        while let Some(from) = walked_from.get_mut(at).filter(|from| **from == usize::MAX) {
+            *from = start;
+            at = next[at];
+        }
+        let circle = walked_from.get(at) == Some(&start);
+        ensure(!circle, "", EXPECTED, "a part that never ends")?;
+    }
+    Ok(())
 }
 
 /// Unpacks every part into nothing, up to the bounds: what the directory of the file says about sizes may be wrong.

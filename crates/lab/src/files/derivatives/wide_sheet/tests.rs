@@ -262,21 +262,29 @@ fn other_formats_are_read() {
     }
 }
 
-/// The reader of the old format panics on the first part of a file.
+/// The reader of the old format panics on the first part of a file, and follows parts that run in a circle until the memory is full.
 #[test]
-fn half_a_workbook_is_refused() {
+fn damaged_workbooks_are_refused() {
     let whole = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../tests/data/wide_table.xls"
     );
     let whole = std::fs::read(whole).unwrap();
+    // sector 8 lists which sector follows which: the ninth, where the directory ends, then follows itself
+    let mut circle = whole.clone();
+    circle[9 * 512 + 4 * 9] = 9;
+    circle[9 * 512 + 4 * 9 + 1..][..3].fill(0);
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("half.xls");
-    std::fs::write(&path, &whole[..4834]).unwrap();
-    let refused = in_scanlan(&path).unwrap_err().to_string();
-    let expected =
-        "half.xls: expected a workbook (.xlsx, .xls, .ods), found a part that cannot be read";
-    assert!(refused.ends_with(expected), "{refused}");
+    for (name, bytes, found) in [
+        ("half.xls", &whole[..4834], "a part that cannot be read"),
+        ("circle.xls", &circle[..], "a part that never ends"),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let refused = in_scanlan(&path).unwrap_err().to_string();
+        let expected = format!("{name}: expected a workbook (.xlsx, .xls, .ods), found {found}");
+        assert!(refused.ends_with(&expected), "{refused}");
+    }
 }
 
 /// A comma among points is one of thousands.
