@@ -59,7 +59,7 @@ pub struct Processed {
 /// Processes every run of a campaign; `progress` is called with the number of runs done.
 ///
 /// # Errors
-/// [`Error::Input`](crate::error::Error::Input) naming run, recording, channel and sample for what cannot be processed; of several runs all, in their
+/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; of several runs all, in their
 /// order.
 pub fn process(
     campaign: &RawCampaign,
