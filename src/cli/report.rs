@@ -17,7 +17,7 @@ use super::vocabulary::{
     Answer, Error, OutputDir, Recommendation, Result, Study, read_text, rendered,
 };
 use crate::fmu::importer::Fmu;
-use crate::fmu::package::with_report;
+use crate::fmu::package::{description_of, with_report};
 use crate::report::{PageFigure, StudyPage, sections_of, summary_figure};
 use folder::{REPORT, SUMMARY, digest, is_of_a_bridge, parsed};
 use parts::{card, curves_of, first_derivatives, known, of_svg, round, row, sentence_row, sliders};
@@ -87,11 +87,11 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
     page.figures = figures(&|name| std::fs::read_to_string(folder.join(name)).ok());
     page.derivatives = first_derivatives(&mut page.figures);
     let path = folder.join(FMU_FILE);
-    let fmu = path.exists().then(|| Fmu::open(&path)).transpose()?;
-    match &fmu {
-        Some(fmu) if summary.sha1.get(DESCRIPTION) == Some(&description_digest(fmu)?) => {
+    let described = path.exists().then(|| description_digest(&path));
+    match described.transpose()? {
+        own @ Some(_) if own.as_ref() == summary.sha1.get(DESCRIPTION) => {
             page.fmu = FMU_FILE.to_owned();
-            page.variables = variables_of(fmu);
+            page.variables = variables_of(&Fmu::open(&path)?);
         }
         Some(_) => page.whose.push_str(
             " The FMU beside this page is another one, of another model or with other options, and no part of it.",
@@ -121,10 +121,8 @@ fn page(folder: &Path, in_the_archive: bool) -> Result<String> {
 
 /// Digest of an FMU's description, whose identity follows from model, options and variables. That of the whole file is not known: the page
 /// in it is written last.
-fn description_digest(fmu: &Fmu) -> Result<String> {
-    let path = fmu.folder().join(DESCRIPTION);
-    let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, e))?;
-    Ok(digest(&bytes))
+fn description_digest(fmu: &Path) -> Result<String> {
+    description_of(fmu).map(|bytes| digest(&bytes))
 }
 
 /// SHA-1 of what a page takes up of the results of a run that are staged in `folder`.
@@ -135,8 +133,7 @@ pub(super) fn digests_of_run(folder: &Path) -> Result<BTreeMap<String, String>> 
     let mut found = digests(folder)?;
     let path = folder.join(FMU_FILE);
     if path.is_file() {
-        let of_fmu = description_digest(&Fmu::open(path)?)?;
-        found.insert(DESCRIPTION.to_owned(), of_fmu);
+        found.insert(DESCRIPTION.to_owned(), description_digest(&path)?);
     }
     Ok(found)
 }

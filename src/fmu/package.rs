@@ -15,8 +15,8 @@ pub use super::standard::FmiVersion;
 use reference_runs::{WASM_MANIFEST, wasm_manifest};
 
 pub(super) use archive_file::archive;
-pub(crate) use archive_file::with_report;
 pub use archive_file::write_archive;
+pub(crate) use archive_file::{description_of, with_report};
 pub use label::Label;
 pub use runtime::Runtime;
 pub(crate) use runtime::{COMPONENT, live_module};

@@ -103,6 +103,21 @@ fn zipped(files: &BTreeMap<String, Vec<u8>>) -> ZipResult<Vec<u8>> {
     Ok(zip.finish()?.into_inner())
 }
 
+/// The description in an archive.
+///
+/// # Errors
+/// [`Error::Input`] for a file that cannot be read as an FMU.
+pub(crate) fn description_of(path: &Path) -> Result<Vec<u8>> {
+    let read = || -> ZipResult<Vec<u8>> {
+        let (mut bytes, file) = (Vec::new(), std::fs::File::open(path)?);
+        let mut zip = ZipArchive::new(file)?;
+        zip.by_name("modelDescription.xml")?
+            .read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    read().map_err(|e| Error::input("archive", "an FMU", e.to_string()).in_file(path))
+}
+
 /// The archive of a study with the study's report in it, among the files by which it can be judged; as it is where it carries no
 /// such files.
 ///

@@ -252,14 +252,14 @@ impl Onset {
     /// The answer in one line: speed, interval, and whether the data reach it, such as
     /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`; of a wide interval how wide it is, `26.0 m/s ± 41 %, 15.2–36.8`.
     pub fn headline(&self) -> String {
-        let speed = match self.headline_m_s() {
-            Ok(speed) => speed,
-            Err(reason) => return format!("flutter onset {reason}"),
-        };
+        if let Err(reason) = self.headline_m_s() {
+            return format!("flutter onset {reason}");
+        }
         let spread = matches!(self.interval, OnsetInterval::Spread { .. });
-        let interval = match self.interval.ends() {
-            Some((low, high)) if spread => format!(" [{}–{}]", shown_m_s(low), shown_m_s(high)),
-            Some((low, high)) => format!(", {}–{}", shown_m_s(low), shown_m_s(high)),
+        let ends = self.interval.ends();
+        let interval = match ends.map(|(low, high)| [low, high].map(shown_m_s)) {
+            Some([low, high]) if spread => format!(" [{low}–{high}]"),
+            Some([low, high]) => format!(", {low}–{high}"),
             None => ", interval not known".to_owned(),
         };
         let tested = match (self.gap, self.in_tested_range) {
@@ -268,16 +268,18 @@ impl Onset {
             (None, Some(false)) => ", OUTSIDE the tested range".to_owned(),
             (None, None) => String::new(),
         };
-        let ends = self.interval.ends().filter(|_| !spread);
-        let half = ends.map_or(0.0, |(low, high)| 0.5 * (high - low) / speed);
-        let wide = match half > WIDE {
-            true => format!(" ± {:.0} %", 100.0 * half),
-            false => String::new(),
+        let (speed, wide) = (shown_m_s(self.at.speed_m_s), self.wide());
+        format!("flutter onset {speed} m/s{wide}{interval}{tested}")
+    }
+
+    /// How wide the interval is, ` ± 41 %`, where it is wide.
+    pub fn wide(&self) -> String {
+        let OnsetInterval::Known(error) = &self.interval else {
+            return String::new();
         };
-        format!(
-            "flutter onset {} m/s{wide}{interval}{tested}",
-            shown_m_s(speed)
-        )
+        let half = 0.5 * (error.high_m_s - error.low_m_s) / self.at.speed_m_s;
+        let wide = (half > WIDE).then(|| format!(" ± {:.0} %", 100.0 * half));
+        wide.unwrap_or_default()
     }
 
     /// Heave over rotation in words.

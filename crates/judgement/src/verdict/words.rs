@@ -36,7 +36,7 @@ impl FlutterReading {
             FlutterSearch::Onset(onset) => {
                 let ends = onset.interval.ends();
                 let ends = ends.map(|(a, b)| format!(" ({}–{})", shown_m_s(a), shown_m_s(b)));
-                speed(onset.at.speed_m_s) + &ends.unwrap_or_default()
+                speed(onset.at.speed_m_s) + &onset.wide() + &ends.unwrap_or_default()
             }
             FlutterSearch::UnstableAtOrBelow(start) => {
                 format!("unstable at and below {}", speed(start.at.speed_m_s))
