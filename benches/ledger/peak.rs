@@ -7,8 +7,9 @@ use std::process::Stdio;
 pub(crate) fn measured(entry: &BenchEntry) -> Result<Option<f64>, String> {
     let output = entry
         .process("--peak")?
-        // the same on every machine, and every time
+        // the same on every machine, and every time: what the allocator keeps of freed blocks for a thread is chance
         .env("RAYON_NUM_THREADS", "1")
+        .env("GLIBC_TUNABLES", "glibc.malloc.tcache_count=0")
         .stderr(Stdio::inherit())
         .output()
         .map_err(|e| e.to_string())?;

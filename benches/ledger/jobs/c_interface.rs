@@ -187,11 +187,13 @@ impl LoadedUnit {
         names.map(|name| self.reference(name))
     }
 
+    #[inline(always)]
     pub(crate) fn do_step(&self, time_s: f64, step_s: f64) {
         // SAFETY: the handle is alive
         assert_eq!(unsafe { (self.step)(self.handle, time_s, step_s, 1) }, 0);
     }
 
+    #[inline(always)]
     pub(crate) fn get(&self, references: &[u32], values: &mut [f64]) {
         assert_eq!(references.len(), values.len());
         let (of, into) = (references.as_ptr(), values.as_mut_ptr());
@@ -202,6 +204,7 @@ impl LoadedUnit {
         );
     }
 
+    #[inline(always)]
     pub(crate) fn set(&self, references: &[u32], values: &[f64]) {
         assert_eq!(references.len(), values.len());
         let (of, from) = (references.as_ptr(), values.as_ptr());

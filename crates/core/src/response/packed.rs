@@ -66,7 +66,13 @@ impl Packed {
         y: &mut [f64],
         mut finish: impl FnMut(f64x4) -> f64x4,
     ) {
-        let (mut blocks, mut y) = (self.blocks.as_slice(), &mut y[..self.rows]);
+        let y = &mut y[..self.rows];
+        if y.len() > 2 * LANES && y.len() <= GROUPS * LANES && v.len() <= FEW_COLUMNS {
+            // one block, of most sections: without a loop, whose needs would lie in the way
+            write(y, sums(simd, &self.blocks[..v.len()], v), &mut finish);
+            return;
+        }
+        let (mut blocks, mut y) = (self.blocks.as_slice(), y);
         while y.len() > 2 * LANES {
             let (own, others) = blocks.split_at(self.columns);
             let groups = if v.len() > FEW_COLUMNS {
@@ -159,11 +165,12 @@ impl OnLanes for Advance<'_> {
         let (zero, least) = (simd.splat_f64s(0.0), simd.splat_f64s(DIED_OUT));
         let mut spoilt = zero;
         w.set(simd, v, y, |x| {
+            // stays zero as long as all are finite
             spoilt = simd.add_f64s(spoilt, simd.mul_f64s(zero, x));
-            let died_out = simd.less_than_f64s(simd.abs_f64s(x), least);
-            simd.select_f64s(died_out, zero, x)
+            let lives = simd.less_than_or_equal_f64s(least, simd.abs_f64s(x));
+            simd.and_f64s(x, pulp::cast(lives))
         });
-        pulp::cast::<_, [f64; LANES]>(spoilt) == [0.0; LANES]
+        simd.reduce_sum_f64s(spoilt) == 0.0
     }
 }
 
@@ -201,9 +208,18 @@ fn sums<S: FourLanes, const N: usize>(
     columns: &[[[f64; LANES]; N]],
     v: &[f64],
 ) -> [f64x4; N] {
+    let (mut four_columns, last) = columns.as_chunks::<PARTIAL_SUMS>();
+    let (mut fours, rest) = v.as_chunks::<PARTIAL_SUMS>();
     let mut sums = [[simd.splat_f64s(0.0); N]; PARTIAL_SUMS];
-    let (four_columns, last) = columns.as_chunks::<PARTIAL_SUMS>();
-    let (fours, rest) = v.as_chunks::<PARTIAL_SUMS>();
+    if let ([four, columns @ ..], [x, values @ ..]) = (four_columns, fours) {
+        // added to zero are only as many as it takes for no sum to be -0
+        add(simd, &mut sums[0], &four[0], x[0]);
+        for part in 1..PARTIAL_SUMS {
+            let x = simd.splat_f64s(x[part]);
+            sums[part] = four[part].map(|column| simd.mul_f64s(pulp::cast(column), x));
+        }
+        (four_columns, fours) = (columns, values);
+    }
     for (four, x) in four_columns.iter().zip(fours) {
         for part in 0..PARTIAL_SUMS {
             add(simd, &mut sums[part], &four[part], x[part]);
