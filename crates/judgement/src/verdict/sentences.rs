@@ -4,7 +4,7 @@ use super::Verdict;
 use super::critical::{Critical, contradict};
 use super::critical_speed::{CriticalSpeed, Phenomenon};
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::Evidence;
+use super::evidence::{Evidence, FlutterReading};
 use super::outcome::{Below, Outcome};
 use super::reasons::doubted_divergence;
 use super::words::{speed, speed_or_none};
@@ -27,7 +27,7 @@ pub(super) fn headline(verdict: &Verdict, evidence: &Evidence) -> String {
 /// What governs, then what the search for flutter found; and what is expected before flutter although its own lower end is not
 /// known.
 fn what(critical: &Critical, evidence: &Evidence) -> String {
-    let flutter = flutter(evidence);
+    let flutter = flutter(evidence) + &judged_before(critical, evidence);
     let against = doubted_divergence(evidence);
     let says = |c: &CriticalSpeed| {
         let (name, best) = (c.phenomenon.name(), speed(c.best_m_s));
@@ -93,6 +93,17 @@ fn flutter(evidence: &Evidence) -> String {
         text.push_str(&format!("; CONTRADICTED by {}: {found}", other.forces));
     }
     text
+}
+
+/// How far all motions can be judged, where that ends before an onset that lies among the tests itself.
+fn judged_before(critical: &Critical, evidence: &Evidence) -> String {
+    let onset = evidence.flutter.first().and_then(FlutterReading::onset);
+    let tested = onset.filter(|onset| onset.in_tested_range == Some(true));
+    let to = critical.judged_to_m_s;
+    match tested.is_some_and(|onset| onset.at.speed_m_s > to * (1.0 + 1e-9)) {
+        true => format!("; all motions judged up to {} only", speed(to)),
+        false => String::new(),
+    }
 }
 
 /// Why the outcome is what it is.

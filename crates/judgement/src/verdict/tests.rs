@@ -269,6 +269,9 @@ fn what_was_not_looked_at_cannot_be_judged() {
     assert_eq!(words(&tested), "CANNOT BE JUDGED");
     tested.flutter[0].basis = tests(31.0);
     assert_eq!(words(&tested), "MET");
+    let headline = Verdict::judge(&tested).headline;
+    let end = "inside the tested range; all motions judged up to 31.0 m/s only";
+    assert!(headline.ends_with(end), "{headline}");
     assert_eq!(words(&scanned(30.0, Vec::new())), "CANNOT BE JUDGED");
 }
 
