@@ -39,15 +39,22 @@ fn products_of_every_shape_have_the_bits_of_their_rows_whatever_the_vectors() {
 
 #[test]
 fn what_has_died_out_is_zero_and_what_has_outgrown_numbers_is_said_in_every_row() {
+    let by_vectors = |w: &Packed, v: &[f64], y: &mut [f64]| advanced(w, v, y);
+    let by_plain_numbers =
+        |w: &Packed, v: &[f64], y: &mut [f64]| on_plain_numbers(Advance(Apply { w, v, y }));
     for rows in 1..28 {
         for spoilt in 0..rows {
-            let unit = Packed::new(&DMatrix::identity(rows, rows));
-            let (mut v, mut y) = (vec![1e-260; rows], vec![9.0; rows]);
-            assert!(advanced(&unit, &v, &mut y));
-            assert_eq!(y, vec![0.0; rows]);
-            for bad in [f64::INFINITY, f64::NAN] {
-                v[spoilt] = bad;
-                assert!(!advanced(&unit, &v, &mut y), "row {spoilt} of {rows}");
+            for advanced in [by_vectors, by_plain_numbers] {
+                let unit = Packed::new(&DMatrix::identity(rows, rows));
+                let (mut v, mut y) = (vec![1e-260; rows], vec![9.0; rows]);
+                v[spoilt] = 1e-240;
+                assert!(advanced(&unit, &v, &mut y));
+                let alive = |row| if row == spoilt { 1e-240 } else { 0.0 };
+                assert_eq!(y, (0..rows).map(alive).collect::<Vec<_>>());
+                for bad in [f64::INFINITY, f64::NAN] {
+                    v[spoilt] = bad;
+                    assert!(!advanced(&unit, &v, &mut y), "row {spoilt} of {rows}");
+                }
             }
         }
     }
