@@ -67,9 +67,13 @@ impl Packed {
         mut finish: impl FnMut(f64x4) -> f64x4,
     ) {
         let y = &mut y[..self.rows];
-        if y.len() > 2 * LANES && y.len() <= GROUPS * LANES && v.len() <= FEW_COLUMNS {
-            // one block, of most sections: without a loop, whose needs would lie in the way
-            write(y, sums(simd, &self.blocks[..v.len()], v), &mut finish);
+        if y.len() > 2 * LANES && y.len() <= (GROUPS + 1) * LANES && v.len() <= FEW_COLUMNS {
+            // most sections, without a loop, whose needs would lie in the way
+            let y = write(y, sums(simd, &self.blocks[..v.len()], v), &mut finish);
+            if !y.is_empty() {
+                let columns = &self.rest.as_chunks::<1>().0[..v.len()];
+                write(y, sums(simd, columns, v), &mut finish);
+            }
             return;
         }
         let (mut blocks, mut y) = (self.blocks.as_slice(), y);
@@ -133,7 +137,7 @@ pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
     on_lanes(Apply { w, v, y });
 }
 
-/// [`apply`] to a state: what has died out becomes zero; returns whether all of the new state is finite.
+/// [`apply`] to a state: what has died out becomes zero; returns whether the new state is finite, and the sum of its magnitudes.
 #[inline]
 pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
     on_lanes(Advance(Apply { w, v, y }))
@@ -163,14 +167,13 @@ impl OnLanes for Advance<'_> {
     fn run<S: FourLanes>(self, simd: S) -> bool {
         let Apply { w, v, y } = self.0;
         let (zero, least) = (simd.splat_f64s(0.0), simd.splat_f64s(DIED_OUT));
-        let mut spoilt = zero;
+        let mut total = zero;
         w.set(simd, v, y, |x| {
-            // stays zero as long as all are finite
-            spoilt = simd.add_f64s(spoilt, simd.mul_f64s(zero, x));
-            let lives = simd.less_than_or_equal_f64s(least, simd.abs_f64s(x));
-            simd.and_f64s(x, pulp::cast(lives))
+            let size = simd.abs_f64s(x);
+            total = simd.add_f64s(total, size);
+            simd.and_f64s(x, pulp::cast(simd.less_than_or_equal_f64s(least, size)))
         });
-        simd.reduce_sum_f64s(spoilt) == 0.0
+        simd.reduce_sum_f64s(total).is_finite()
     }
 }
 
