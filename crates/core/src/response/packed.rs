@@ -2,7 +2,7 @@
 
 use super::lanes::{FourLanes, LANES, OnLanes, on_lanes};
 use nalgebra::DMatrix;
-use pulp::{Simd, f64x4};
+use pulp::f64x4;
 
 /// States smaller than this have died out. Numbers below 1e-308 are computed thirty times slower; products with the
 /// coefficients of a step stay above.
@@ -69,29 +69,29 @@ impl Packed {
         let y = &mut y[..self.rows];
         if y.len() > 2 * LANES && y.len() <= (GROUPS + 1) * LANES && v.len() <= FEW_COLUMNS {
             // most sections, without a loop, whose needs would lie in the way
-            let y = write(y, sums(simd, &self.blocks[..v.len()], v), &mut finish);
+            let y = set_groups(simd, &self.blocks, v, y, &mut finish);
             if !y.is_empty() {
-                let columns = &self.rest.as_chunks::<1>().0[..v.len()];
-                write(y, sums(simd, columns, v), &mut finish);
+                set_groups(simd, self.rest.as_chunks::<1>().0, v, y, &mut finish);
             }
             return;
         }
         let (mut blocks, mut y) = (self.blocks.as_slice(), y);
         while y.len() > 2 * LANES {
             let (own, others) = blocks.split_at(self.columns);
-            let groups = if v.len() > FEW_COLUMNS {
-                one_by_one(simd, &own[..v.len()], v)
+            y = if v.len() > FEW_COLUMNS {
+                let own = &own[..v.len()];
+                // one after the other: so many columns wait for the matrix, not for the vector
+                let groups = std::array::from_fn::<_, GROUPS, _>(|g| sums(simd, own, g, v));
+                write(y, groups.map(|[group]| group), &mut finish)
             } else {
-                sums(simd, &own[..v.len()], v)
+                set_groups(simd, own, v, y, &mut finish)
             };
-            (blocks, y) = (others, write(y, groups, &mut finish));
+            blocks = others;
         }
         if y.len() > LANES {
-            let columns = &self.rest.as_chunks::<2>().0[..v.len()];
-            write(y, sums(simd, columns, v), &mut finish);
+            set_groups(simd, self.rest.as_chunks::<2>().0, v, y, &mut finish);
         } else if !y.is_empty() {
-            let columns = &self.rest.as_chunks::<1>().0[..v.len()];
-            write(y, sums(simd, columns, v), &mut finish);
+            set_groups(simd, self.rest.as_chunks::<1>().0, v, y, &mut finish);
         }
     }
 }
@@ -177,6 +177,18 @@ impl OnLanes for Advance<'_> {
     }
 }
 
+/// Sums of `N` groups of rows, finished and written; returns the rows behind them.
+#[inline(always)]
+fn set_groups<'a, S: FourLanes, const N: usize>(
+    simd: S,
+    columns: &[[[f64; LANES]; N]],
+    v: &[f64],
+    y: &'a mut [f64],
+    finish: &mut impl FnMut(f64x4) -> f64x4,
+) -> &'a mut [f64] {
+    write(y, sums::<S, N, N>(simd, &columns[..v.len()], 0, v), finish)
+}
+
 /// Finishes and writes groups of rows of which the last may hold more; returns the rows behind them.
 #[inline(always)]
 fn write<'a, const N: usize>(
@@ -204,107 +216,57 @@ fn write<'a, const N: usize>(
     &mut []
 }
 
-/// The sums of `N` groups of rows.
+/// The sums of `M` of `N` groups of rows, from group `first` on.
 #[inline(always)]
-fn sums<S: FourLanes, const N: usize>(
+fn sums<S: FourLanes, const N: usize, const M: usize>(
     simd: S,
     columns: &[[[f64; LANES]; N]],
+    first: usize,
     v: &[f64],
-) -> [f64x4; N] {
+) -> [f64x4; M] {
+    let product = |column: &[[f64; LANES]; N], x: f64, group: usize| {
+        simd.mul_f64s(pulp::cast(column[first + group]), simd.splat_f64s(x))
+    };
+    let add = |sum: &mut [f64x4; M], column: &[[f64; LANES]; N], x: f64| {
+        for (group, sum) in sum.iter_mut().enumerate() {
+            *sum = simd.add_f64s(*sum, product(column, x, group));
+        }
+    };
     let (mut four_columns, last) = columns.as_chunks::<PARTIAL_SUMS>();
     let (mut fours, rest) = v.as_chunks::<PARTIAL_SUMS>();
-    let mut sums = [[simd.splat_f64s(0.0); N]; PARTIAL_SUMS];
+    let mut sums = [[simd.splat_f64s(0.0); M]; PARTIAL_SUMS];
     if let ([four, columns @ ..], [x, values @ ..]) = (four_columns, fours) {
         // added to zero are only as many as it takes for no sum to be -0
-        add(simd, &mut sums[0], &four[0], x[0]);
+        add(&mut sums[0], &four[0], x[0]);
         for part in 1..PARTIAL_SUMS {
-            let x = simd.splat_f64s(x[part]);
-            sums[part] = four[part].map(|column| simd.mul_f64s(pulp::cast(column), x));
+            for (group, sum) in sums[part].iter_mut().enumerate() {
+                *sum = product(&four[part], x[part], group);
+            }
         }
         (four_columns, fours) = (columns, values);
     }
     for (four, x) in four_columns.iter().zip(fours) {
         for part in 0..PARTIAL_SUMS {
-            add(simd, &mut sums[part], &four[part], x[part]);
+            add(&mut sums[part], &four[part], x[part]);
         }
     }
     // one after the other, not by a number that only the run knows: sums stay in registers
     if let ([column, ..], [x, ..]) = (last, rest) {
-        add(simd, &mut sums[0], column, *x);
+        add(&mut sums[0], column, *x);
     }
     if let ([_, column, ..], [_, x, ..]) = (last, rest) {
-        add(simd, &mut sums[1], column, *x);
+        add(&mut sums[1], column, *x);
     }
     if let ([_, _, column, ..], [_, _, x, ..]) = (last, rest) {
-        add(simd, &mut sums[2], column, *x);
+        add(&mut sums[2], column, *x);
     }
     let [mut a, b, c, d] = sums;
-    for group in 0..N {
+    for group in 0..M {
         let halves = [(a[group], b[group]), (c[group], d[group])];
         let [ab, cd] = halves.map(|(x, y)| simd.add_f64s(x, y));
         a[group] = simd.add_f64s(ab, cd);
     }
     a
-}
-
-/// The same, one group after the other, in a function of its own: so many columns wait for the matrix.
-#[inline(never)]
-fn one_by_one<S: FourLanes, const N: usize>(
-    simd: S,
-    columns: &[[[f64; LANES]; N]],
-    v: &[f64],
-) -> [f64x4; N] {
-    simd.vectorize(OneByOne { simd, columns, v })
-}
-
-struct OneByOne<'a, S, const N: usize> {
-    simd: S,
-    columns: &'a [[[f64; LANES]; N]],
-    v: &'a [f64],
-}
-
-impl<S: FourLanes, const N: usize> pulp::WithSimd for OneByOne<'_, S, N> {
-    type Output = [f64x4; N];
-
-    #[inline(always)]
-    fn with_simd<Any: Simd>(self, _: Any) -> Self::Output {
-        let simd = self.simd;
-        let mut all = [simd.splat_f64s(0.0); N];
-        for group in 0..N {
-            let mut sums = [simd.splat_f64s(0.0); PARTIAL_SUMS];
-            let (four_columns, last) = self.columns.as_chunks::<PARTIAL_SUMS>();
-            let (fours, rest) = self.v.as_chunks::<PARTIAL_SUMS>();
-            let mut grow = |part: usize, column: &[[f64; LANES]; N], x: f64| {
-                let product = simd.mul_f64s(pulp::cast(column[group]), simd.splat_f64s(x));
-                sums[part] = simd.add_f64s(sums[part], product);
-            };
-            for (four, x) in four_columns.iter().zip(fours) {
-                for part in 0..PARTIAL_SUMS {
-                    grow(part, &four[part], x[part]);
-                }
-            }
-            for (part, (column, x)) in last.iter().zip(rest).enumerate() {
-                grow(part, column, *x);
-            }
-            let [a, b, c, d] = sums;
-            all[group] = simd.add_f64s(simd.add_f64s(a, b), simd.add_f64s(c, d));
-        }
-        all
-    }
-}
-
-#[inline(always)]
-fn add<S: FourLanes, const N: usize>(
-    simd: S,
-    sum: &mut [f64x4; N],
-    column: &[[f64; LANES]; N],
-    x: f64,
-) {
-    let x = simd.splat_f64s(x);
-    for group in 0..N {
-        let product = simd.mul_f64s(pulp::cast(column[group]), x);
-        sum[group] = simd.add_f64s(sum[group], product);
-    }
 }
 
 /// Whether all values are finite; those that have died out become zero. Without a branch: this is part of every step.
