@@ -4,7 +4,6 @@
 use crate::bridges::{THREE, TWO, langenuen, lively, read};
 use crate::{models, three_dof};
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
-use aerodeck::files::bridge::FieldTable;
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Export;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
@@ -326,13 +325,7 @@ fn damped_bridges_in_gusts_depend_on_what_is_stated() {
     rows.for_each(|row| row.truncate(50));
     let wanted = BridgeExportOptions {
         gust_strips: Some(3),
-        turbulence: Some(FieldTable {
-            step_s: field.step_s,
-            from_middle: false,
-            mean_speed_m_s: None,
-            gusts: field.gusts,
-            along_m: field.along_m,
-        }),
+        turbulence: Some(field),
         ..BridgeExportOptions::default()
     };
     let (model, export) = study.export(&wanted).unwrap();

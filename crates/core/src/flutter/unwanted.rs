@@ -19,6 +19,9 @@ const BELOW: f64 = 1e-6;
 /// What a scan from nearly still air to the onset found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct UnwantedGrowth {
+    /// Force model, where there are several.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub model: String,
     /// The scan goes up to the onset, or to the highest speed where there is none, m/s.
     pub scanned_to_m_s: f64,
     /// Bands below it in which the section grows by extrapolation alone.
@@ -79,6 +82,7 @@ pub fn unwanted_growth_below(
     let bands = Scan::new("", section, tested).bands(limit * BEYOND, false, below)?;
     let (bands, own): (Vec<_>, Vec<_>) = bands.into_iter().partition(GrowthBand::extrapolated);
     Ok(UnwantedGrowth {
+        model: String::new(),
         scanned_to_m_s: limit,
         bands,
         proved: all_speeds_are_known(section),

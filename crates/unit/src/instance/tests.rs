@@ -13,9 +13,9 @@ mod unknown;
 
 use super::Instance;
 use crate::aerodynamics::{GustForce, RationalAdmittance};
-use crate::bridge::{Bridge, DampedPoint, Dampers, MassDamper, ViscousLink};
+use crate::bridge::{Bridge, DampedPoint, Dampers, MassDamper, StripGroup, ViscousLink};
 use crate::bridge_gusts::{BridgeGusts, TurbulenceOptions};
-use crate::bridge_options::{BridgeOptions, GroupOptions};
+use crate::bridge_options::BridgeOptions;
 use crate::force_options::ForceOptions;
 use crate::lifecycle::State;
 use crate::resources::{OptionFiles, Resources};
@@ -65,7 +65,7 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
         modes: bridge.modes,
         dampers: Dampers::default(),
         structure_alone: false,
-        groups: vec![GroupOptions {
+        groups: vec![StripGroup {
             name: "girder".into(),
             width_m: model.section.width_m,
             wind_factor: 1.0,
