@@ -6,7 +6,7 @@ use crate::{models, three_dof};
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Export;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use aerodeck::fmu::variables::{
     Causality, Dependency, DependencyKind, Role, StartValue, Variability, Variable, VariableTable,
 };
@@ -43,10 +43,7 @@ impl ProbedUnit {
         let json = model.to_json().unwrap();
         Self::new(what, move || {
             let gusts = gusts.as_deref();
-            let files = OptionFiles {
-                gusts,
-                ..OptionFiles::default()
-            };
+            let files = [None, gusts, None];
             Resources::from_bytes(json.as_bytes(), files).unwrap()
         })
     }

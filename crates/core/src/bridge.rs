@@ -61,7 +61,7 @@ pub struct BridgeMode {
 pub const MOST_WIND_FACTOR: f64 = 3.0;
 
 /// Nodes of one section in one wind.
-#[derive(Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StripGroup<Forces = Arc<dyn Transfer>> {
     /// Name of the section.
@@ -86,17 +86,6 @@ impl<Forces> StripGroup<Forces> {
             nodes: self.nodes.clone(),
             forces,
         }
-    }
-}
-
-impl<Forces> std::fmt::Debug for StripGroup<Forces> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("StripGroup")
-            .field("name", &self.name)
-            .field("width_m", &self.width_m)
-            .field("wind_factor", &self.wind_factor)
-            .field("nodes", &self.nodes)
-            .finish_non_exhaustive()
     }
 }
 

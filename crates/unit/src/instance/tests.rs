@@ -18,7 +18,7 @@ use crate::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::bridge_options::BridgeOptions;
 use crate::force_options::ForceOptions;
 use crate::lifecycle::State;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use std::sync::Arc;
@@ -127,11 +127,11 @@ fn resources_in(kind: Exported, gusts: bool) -> Resources {
     let force = gust_force();
     let gust_text = gusts.then(|| serde_json::to_string(&force).unwrap());
     let of_files = |name, force: Option<&str>| {
-        let files = OptionFiles {
-            force: force.map(str::as_bytes),
-            gusts: gust_text.as_deref().map(str::as_bytes),
-            ..OptionFiles::default()
-        };
+        let files = [
+            force.map(str::as_bytes),
+            gust_text.as_deref().map(str::as_bytes),
+            None,
+        ];
         Resources::from_bytes(&fixture(name), files).unwrap()
     };
     match kind {
