@@ -99,21 +99,17 @@ impl UnwantedGrowth {
     /// At which speeds, and why; without the full stop.
     pub fn explain(&self) -> String {
         if self.is_none() {
+            let but = self.instability_from_m_s.map_or(String::new(), |from| {
+                format!(" but that of the instability itself, which the model carries down to {from:.3} m/s")
+            });
+            let proved = match self.proved {
+                true => ", proved for the model",
+                false => "",
+            };
             let to = self.scanned_to_m_s;
-            let proved = if self.proved {
-                ", proved for the model"
-            } else {
-                ""
-            };
-            return match self.instability_from_m_s {
-                None => {
-                    format!("no growing oscillation from nearly still air to {to:.3} m/s{proved}")
-                }
-                Some(from) => format!(
-                    "no growing oscillation from nearly still air to {to:.3} m/s but that of the instability itself, which the model \
-                     carries down to {from:.3} m/s{proved}"
-                ),
-            };
+            return format!(
+                "no growing oscillation from nearly still air to {to:.3} m/s{but}{proved}"
+            );
         }
         let each: Vec<String> = self.bands.iter().map(GrowthBand::explain).collect();
         format!(
