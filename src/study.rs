@@ -24,7 +24,6 @@ pub use deck::Deck;
 pub use defaults::demo_study_text;
 pub(crate) use defaults::{new_study_text, thesis_study_text};
 pub(crate) use evidence::{saved_evidence, section_evidence};
-pub use failures::StageFailure;
 pub(crate) use failures::{attempt, is_of_a_file};
 pub(crate) use intervals::{
     FITS, UNCERTAINTY, interval_of, saved_moved_onset, saved_uncertainty, state_intervals,
@@ -32,7 +31,7 @@ pub(crate) use intervals::{
 };
 pub use intervals::{KnownUncertainty, uncertainty_beside};
 pub use models::{TrainedWithReport, train_one};
-pub use onsets::{Deviation, Divergence, FlutterStudy, ModelGrowth, OnsetSummary, flutter_study};
+pub use onsets::{Deviation, FlutterStudy, OnsetSummary, flutter_study};
 pub(crate) use plausibility::study_findings;
 pub(crate) use processed::{processed_study_text, read_section};
 pub use records::RecordSet;

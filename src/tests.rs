@@ -8,7 +8,7 @@ use crate::fmu::force_options::ForceOptions;
 use crate::fmu::importer::Fmu;
 use crate::fmu::instance::Instance;
 use crate::fmu::package::{Export, FmiVersion, Runtime, package};
-use crate::fmu::resources::{OptionFiles, Resources};
+use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Causality, StartValue};
 use crate::study::{Study, demo_study_text};
 use crate::trained_model::TrainedModel;
@@ -124,8 +124,7 @@ fn run(resources: Resources) -> bool {
 #[test]
 fn mutated_models() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let mut read =
-            |bytes: &[u8]| Resources::from_bytes(bytes, OptionFiles::default()).is_ok_and(run);
+        let mut read = |bytes: &[u8]| Resources::from_bytes(bytes, [None; 3]).is_ok_and(run);
         all_survive(kind, &model(kind), 60, &mut read);
     }
 }
@@ -143,11 +142,8 @@ fn mutated_options_of_forces() {
 fn mutated_gust_forces() {
     let rational = model("rational");
     let gusts = r#"{"dofs": ["vertical", "torsion"], "coefficients": [[0.3, -5.0], [0.05, 1.2]], "admittance": "sears", "source": "test"}"#;
-    fn with(gusts: &[u8]) -> OptionFiles<'_> {
-        OptionFiles {
-            gusts: Some(gusts),
-            ..OptionFiles::default()
-        }
+    fn with(gusts: &[u8]) -> [Option<&[u8]>; 3] {
+        [None, Some(gusts), None]
     }
     assert!(Resources::from_bytes(&rational, with(gusts.as_bytes())).is_ok_and(run));
     all_survive("gusts.json", gusts.as_bytes(), 100, |bytes| {
@@ -156,11 +152,8 @@ fn mutated_gust_forces() {
 }
 
 /// Options of forces alone, without gusts.
-fn of_force(force: Option<&[u8]>) -> OptionFiles<'_> {
-    OptionFiles {
-        force,
-        ..OptionFiles::default()
-    }
+fn of_force(force: Option<&[u8]>) -> [Option<&[u8]>; 3] {
+    [force, None, None]
 }
 
 /// States with the right digest, so that what is behind it is reached as well.

@@ -65,7 +65,7 @@ pub(super) fn comparisons(
     lines.extend(results.deviations.iter().map(|d| d.explain()));
     for d in &results.divergence {
         let speed = speed_or("none", d.speed_m_s);
-        lines.push(format!("Divergence, {}: {speed}", d.model));
+        lines.push(format!("Divergence, {}: {speed}", d.forces));
     }
     lines.extend(stepped.map(SteppedOnset::explain));
     lines

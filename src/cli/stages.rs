@@ -15,9 +15,10 @@ use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::package;
 use crate::identification;
 use crate::study::{
-    Deck, FITS, KnownUncertainty, RecordSet, StageFailure, TrainedWithReport, UNCERTAINTY,
-    flutter_study, interval_of, is_of_a_file, state_intervals, train_one,
+    Deck, FITS, KnownUncertainty, RecordSet, TrainedWithReport, UNCERTAINTY, flutter_study,
+    interval_of, is_of_a_file, state_intervals, train_one,
 };
+use crate::verdict::StageFailure;
 use crate::wind_tunnel::{Record, RecordFile, RecordSource};
 use std::ffi::OsString;
 use std::path::Path;

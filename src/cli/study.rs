@@ -9,10 +9,10 @@ use super::vocabulary::{
 };
 use super::{buffeting, figures, headline, measured_forces, report, result_files, study_run, text};
 use crate::study::{
-    RecordSet, StageFailure, SteppedOnset, TrainedWithReport, interval_of, section_evidence,
-    stepped_onset, study_findings,
+    RecordSet, SteppedOnset, TrainedWithReport, interval_of, section_evidence, stepped_onset,
+    study_findings,
 };
-use crate::verdict::Evidence;
+use crate::verdict::{Evidence, StageFailure};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,8 @@
 use super::stages::FMU_FILE;
 use super::vocabulary::{Finding, FlutterStudy, Recommendation, Verdict};
 use crate::identification::FitReport;
-use crate::study::{KnownUncertainty, SpeedRange, StageFailure, SteppedOnset};
+use crate::study::{KnownUncertainty, SpeedRange, SteppedOnset};
+use crate::verdict::StageFailure;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -9,7 +9,8 @@ use super::vocabulary::{
 };
 use crate::flutter::{Onset, OnsetInterval, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
-use crate::study::{Deck, Divergence, KnownUncertainty, StageFailure};
+use crate::study::{Deck, KnownUncertainty};
+use crate::verdict::{Divergence, StageFailure};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -177,7 +178,7 @@ fn force_symbol(dof: Dof) -> &'static str {
 
 /// Everything that was found on the models of a study.
 pub(super) fn found(results: &FlutterStudy) -> String {
-    let growths = results.growth.iter().map(|g| growth(&g.model, &g.growth));
+    let growths = results.growth.iter().map(|g| growth(&g.model, g));
     let growths: String = growths.collect();
     let (divergence, deviations) = (divergence(&results.divergence), deviations(results));
     onsets(results) + &growths + &divergence + &deviations
@@ -286,9 +287,9 @@ pub(crate) fn failures(all: &[StageFailure]) -> String {
 
 /// Divergence of each model.
 fn divergence(all: &[Divergence]) -> String {
-    let assumed = |d: &Divergence| Some(format!("  {}: {}\n", d.model, d.assumed.as_ref()?));
+    let assumed = |d: &Divergence| Some(format!("  {}: {}\n", d.forces, d.assumed.as_ref()?));
     let assumed: String = all.iter().filter_map(assumed).collect();
-    let speed = |d: &Divergence| format!("{} {}", d.model, speed_or("none", d.speed_m_s));
+    let speed = |d: &Divergence| format!("{} {}", d.forces, speed_or("none", d.speed_m_s));
     let speeds: Vec<String> = all.iter().map(speed).collect();
     format!("Divergence: {}\n{assumed}", speeds.join(", "))
 }

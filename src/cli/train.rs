@@ -3,8 +3,9 @@
 use super::stages::{RECORDS, Stages};
 use super::text;
 use super::vocabulary::{Answer, OutputDir, Progress, Result, StudyArgs};
+use crate::flutter::UnwantedGrowth;
 use crate::fmu::package::growth_of;
-use crate::study::{ModelGrowth, RecordSet};
+use crate::study::RecordSet;
 
 /// Runs the command.
 pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
@@ -29,7 +30,7 @@ pub(crate) fn run(args: &StudyArgs, progress: &Progress) -> Result<Answer> {
         if let Some(growth) = stages.attempt(stage, growth)? {
             text.push_str(&text::growth(name, &growth));
             let model = name.clone();
-            growths.push(ModelGrowth { model, growth });
+            growths.push(UnwantedGrowth { model, ..growth });
         }
     }
     text.push_str(&text::failures(&stages.failed));

@@ -26,7 +26,7 @@ use super::description_fmi3;
 use super::location::MODEL_FILE;
 use super::vocabulary::{
     BOUNDS_FILE, BRIDGE_FILE, BridgeOptions, Element, FORCE_FILE, ForceOptions, GUST_FILE,
-    OnsetBounds, OptionFiles, Resources, TURBULENCE_FILE, TurbulenceOptions,
+    OPTION_FILES, OnsetBounds, Resources, TURBULENCE_FILE, TurbulenceOptions,
 };
 use crate::aerodynamics::GustForce;
 use crate::aeroelastic::CoupledSection;
@@ -121,14 +121,7 @@ pub fn package(model: &TrainedModel, runtimes: &[Runtime], export: Export) -> Re
     let model = bytes(MODEL_FILE).unwrap_or_default();
     let resources = match bytes(BRIDGE_FILE) {
         Some(bridge) => Resources::of_bridge(model, bridge, bytes(TURBULENCE_FILE))?,
-        None => {
-            let options = OptionFiles {
-                force: bytes(FORCE_FILE),
-                gusts: bytes(GUST_FILE),
-                bounds: bytes(BOUNDS_FILE),
-            };
-            Resources::from_bytes(model, options)?
-        }
+        None => Resources::from_bytes(model, OPTION_FILES.map(bytes))?,
     };
     assembled(resources, files, runtimes, &export)
 }

@@ -15,7 +15,7 @@ const GOLAND_CHORD_M: f64 = 1.8288;
 /// Goland's wing: modes of the embedded file, undamped as they stand there, strips of Theodorsen's plate along all of it.
 fn goland_wing() -> Result<Bridge> {
     let modes = embedded::modes("goland")?;
-    let wing = StripGroup {
+    let wing: StripGroup = StripGroup {
         name: "wing".to_owned(),
         width_m: GOLAND_CHORD_M,
         wind_factor: 1.0,
@@ -38,7 +38,7 @@ fn iabse_2a_bridge(motions: &[Dof], against_lateral: bool) -> Result<Bridge> {
     let table = embedded::iabse_2a_derivatives()?;
     let by = Interpolation::LinearK;
     let forces = InterpolatedTable::by(by, &table, motions, Extrapolation::Hold)?;
-    let girder = StripGroup {
+    let girder: StripGroup = StripGroup {
         name: "girder".to_owned(),
         width_m: table.width_m,
         wind_factor: 1.0,

@@ -26,6 +26,7 @@ pub use similarity::{Similarity, equivalent_section, similarities};
 
 use super::KnownUncertainty;
 use super::speeds::{SEARCHED_AT_LEAST, reaching};
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Bridge, BridgeMode, StripGroup};
 use crate::error::{Result, counted};
@@ -139,10 +140,8 @@ impl BridgeStudy {
         };
         if study.sections.iter().any(|s| s.table.is_some()) {
             let groups = study.by_model.groups.iter().zip(&study.section_of_group);
-            let by_table = groups.map(|(group, section)| StripGroup {
-                forces: study.sections[*section].forces(true),
-                ..group.clone()
-            });
+            let by_table = groups
+                .map(|(group, section)| group.with_forces(study.sections[*section].forces(true)));
             study.by_table = Some(study.with_groups(by_table.collect())?);
         }
         Ok(study)
@@ -225,10 +224,8 @@ impl BridgeStudy {
             }
             let theory =
                 LinearQuasiSteady::new(&motions, statics.arms, 0.0, statics.coefficients());
-            groups.push(StripGroup {
-                forces: Arc::new(theory),
-                ..group.clone()
-            });
+            let forces: Arc<dyn Transfer> = Arc::new(theory);
+            groups.push(group.with_forces(forces));
         }
         if groups.is_empty() {
             return Ok(None);

@@ -1,7 +1,7 @@
 //! What is known of the section of a study, as evidence for its verdict.
 
 use super::intervals::{interval_of, saved_moved_onset, uncertainty_beside};
-use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
+use super::{Deck, FlutterStudy, KnownUncertainty, Study, study_findings};
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
@@ -15,8 +15,8 @@ use crate::section::{SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use crate::verdict::{
-    CriticalSpeed, DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation,
-    Reach,
+    CriticalSpeed, Divergence, Evidence, FlutterReading, ForceBasis, MeanRotation, Reach,
+    StageFailure,
 };
 use std::path::Path;
 
@@ -45,18 +45,18 @@ pub(crate) fn section_evidence(
     let mut growth = results.growth.iter();
     let growth = growth.find(|g| Some(g.model.as_str()) == name);
     let of_answer = |model: &str| Some(model) == name || model == table;
-    let divergence = results.divergence.iter().filter(|d| of_answer(&d.model));
-    let divergence = divergence.map(|d| DivergenceReading {
-        lower_m_s: d.lower_m_s,
-        assumed: d.assumed.clone(),
-        ..DivergenceReading::at(&forces(&d.model, &table), d.speed_m_s)
+    let divergence = results.divergence.iter();
+    let divergence = divergence.filter(|d| of_answer(&d.forces));
+    let divergence = divergence.map(|d| Divergence {
+        forces: forces(&d.forces, &table),
+        ..d.clone()
     });
     let mut evidence = Evidence {
         required: study.flutter.required(),
         flutter: flutter.collect(),
         searched_to_m_s: Some(study.speeds().searched_to_m_s),
         divergence: divergence.collect(),
-        growth: growth.map(|g| g.growth.clone()),
+        growth: growth.cloned(),
         failures: failures(study, failed, name),
         test_speeds: known.and_then(one_test_speed),
         implausible,
@@ -155,18 +155,17 @@ fn of_deck(study: &Study, deck: &Deck, results: &FlutterStudy) -> Option<Flutter
     })
 }
 
-fn failures(study: &Study, failed: &[StageFailure], own: Option<&str>) -> Vec<Failure> {
+fn failures(study: &Study, failed: &[StageFailure], own: Option<&str>) -> Vec<StageFailure> {
     let names = study.models.iter().map(|m| m.name.as_str());
     let others: Vec<&str> = names.filter(|m| Some(*m) != own).collect();
-    let bears = |stage: &str| {
+    let is_beside = |stage: &str| {
         let draws = DRAWING.iter().any(|d| stage.starts_with(d));
         let of_another = own.is_some() && others.iter().any(|m| stage.ends_with(&format!(" {m}")));
-        !draws && !of_another
+        draws || of_another
     };
-    let all = failed.iter().map(|f| Failure {
-        stage: f.stage.clone(),
-        reason: f.reason.clone(),
-        bears_on_answer: bears(&f.stage),
+    let all = failed.iter().map(|f| StageFailure {
+        beside_answer: is_beside(&f.stage),
+        ..f.clone()
     });
     all.collect()
 }
@@ -178,12 +177,8 @@ fn one_test_speed(known: &KnownUncertainty) -> Option<usize> {
 }
 
 /// Quasi-steady theory beside the derivatives that failed.
-pub(super) fn of_theory(error: Error) -> Failure {
-    Failure {
-        stage: "quasi-steady theory".to_owned(),
-        reason: error.to_string(),
-        bears_on_answer: true,
-    }
+pub(super) fn of_theory(error: Error) -> StageFailure {
+    StageFailure::new("quasi-steady theory", error)
 }
 
 /// What static coefficients say beside the derivatives: galloping, divergence about the equilibrium, mean rotation.
@@ -210,9 +205,9 @@ pub(super) fn add_coefficients(
     }
     match found.equilibrium_end {
         Some(EquilibriumEnd::Divergence { speed_m_s, .. }) => {
-            evidence.divergence.push(DivergenceReading {
+            evidence.divergence.push(Divergence {
                 measured: true,
-                ..DivergenceReading::at(&forces, Some(speed_m_s))
+                ..Divergence::at(&forces, Some(speed_m_s))
             });
         }
         Some(end @ EquilibriumEnd::OutsideTable { .. }) => {

@@ -1,31 +1,7 @@
 //! Stages that fail without taking the others with them.
 
 use crate::error::{Error, Result};
-use serde::{Deserialize, Serialize};
-
-/// A stage of a study that failed; what does not need it went on.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct StageFailure {
-    /// Which stage, in words.
-    pub stage: String,
-    /// Why.
-    pub reason: String,
-}
-
-impl StageFailure {
-    /// A stage and why it failed.
-    pub(crate) fn new(stage: impl Into<String>, reason: impl ToString) -> Self {
-        Self {
-            stage: stage.into(),
-            reason: reason.to_string(),
-        }
-    }
-
-    /// The failure in words.
-    pub(crate) fn explain(&self) -> String {
-        format!("FAILED {}: {}", self.stage, self.reason)
-    }
-}
+use crate::verdict::StageFailure;
 
 /// Whether an error is one of a file, to be mended before anything else is of use: it cannot be read or written, or what
 /// stands in it is wrong.

@@ -1,7 +1,7 @@
 //! Curves, onsets and divergence of all models of a study, side by side.
 
 use super::routes::THEORY;
-use super::{Deck, StageFailure, Study, attempt};
+use super::{Deck, Study, attempt};
 use crate::aerodynamics::{Realizable, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -12,6 +12,7 @@ use crate::flutter::{
 };
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
+use crate::verdict::{Divergence, StageFailure};
 use serde::{Deserialize, Serialize};
 
 /// Results of all models of a study.
@@ -29,7 +30,7 @@ pub struct FlutterStudy {
     /// Searches that found none.
     pub stable: Vec<OnsetSummary>,
     /// Growth of each trained model below its onset, by extrapolation alone.
-    pub growth: Vec<ModelGrowth>,
+    pub growth: Vec<UnwantedGrowth>,
     /// Static divergence of each trained model and of the deck itself, m/s; `null` where there is none.
     pub divergence: Vec<Divergence>,
     /// Each model's onset against the deck's own (exact, or interpolated table).
@@ -40,16 +41,6 @@ pub struct FlutterStudy {
     /// What could not be computed, and why.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failed: Vec<StageFailure>,
-}
-
-/// Growth of one model where nothing was tested.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ModelGrowth {
-    /// Force model.
-    pub model: String,
-    /// What the scan found.
-    #[serde(flatten)]
-    pub growth: UnwantedGrowth,
 }
 
 /// A search without an onset.
@@ -65,21 +56,6 @@ pub struct OnsetSummary {
     pub stable_up_to_m_s: f64,
     /// Why nothing is known outside, where a speed that was asked for is.
     pub not_judged: Option<String>,
-}
-
-/// Divergence of one model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Divergence {
-    /// Force model.
-    pub model: String,
-    /// Divergence speed, m/s.
-    pub speed_m_s: Option<f64>,
-    /// What is left of it when what was assumed about steady flow is as wrong as on a flat plate, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lower_m_s: Option<f64>,
-    /// What was assumed about steady flow.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub assumed: Option<String>,
 }
 
 /// Difference of a model's onset from the deck's own.
@@ -117,10 +93,9 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
     let still = deck.static_transfer().and_then(|(still, assumed)| {
         let speed_m_s = divergence_speed(&structure, &still)?;
         Ok(Divergence {
-            model: name.clone(),
-            speed_m_s,
             lower_m_s: assumed.zip(speed_m_s).map(|(a, v)| a.lower_m_s(v)),
             assumed: assumed.map(AssumedAtRest::explain),
+            ..Divergence::at(&name, speed_m_s)
         })
     });
     let stage = format!("divergence of the {name}");
@@ -170,18 +145,13 @@ impl FlutterStudy {
             .extend(curves.map(|c| c.marked(structure.width_m, tested)));
         let growth = unwanted_growth(&section, &speeds.search(), tested);
         let growth = attempt(failed, format!("scan for growth of {name}"), growth)?;
-        self.growth.extend(growth.map(|growth| ModelGrowth {
+        self.growth.extend(growth.map(|growth| UnwantedGrowth {
             model: name.clone(),
-            growth,
+            ..growth
         }));
         let steady = divergence_with_forces(structure, &model.model);
         if let Some(speed_m_s) = attempt(failed, format!("divergence of {name}"), steady)? {
-            self.divergence.push(Divergence {
-                model: name.clone(),
-                speed_m_s,
-                lower_m_s: None,
-                assumed: None,
-            });
+            self.divergence.push(Divergence::at(name, speed_m_s));
         }
         let search = find_onset(name, &section, &speeds.search(), tested);
         let Some(search) = attempt(failed, format!("onset of {name}"), search)? else {

@@ -4,7 +4,6 @@
 use crate::bridges::lively;
 use aerodeck::aerodynamics::RationalAdmittance;
 use aerodeck::aeroelastic::CoupledSection;
-use aerodeck::files::bridge::FieldTable;
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Export;
 use aerodeck::fmu::resources::Resources;
@@ -282,13 +281,6 @@ fn turbulence_of_the_archive_is_buffeting() {
     let study = lively();
     let block = study.buffeting_block().unwrap();
     let field = study.first_field(&block, WIND).unwrap();
-    let field = FieldTable {
-        step_s: field.step_s,
-        along_m: field.along_m,
-        from_middle: false,
-        mean_speed_m_s: None,
-        gusts: field.gusts,
-    };
     let expected = study.buffeting_by(&block, WIND, &field).unwrap();
     let step_s = field.step_s;
     let (model, export) = study

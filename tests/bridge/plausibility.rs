@@ -21,7 +21,7 @@ fn langenuen() -> BridgeModes {
 }
 
 fn bridge(modes: BridgeModes, width_m: f64, air_density_kg_m3: f64) -> Bridge {
-    let group = StripGroup {
+    let group: StripGroup = StripGroup {
         name: "girder".into(),
         width_m,
         wind_factor: 1.0,

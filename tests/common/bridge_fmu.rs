@@ -3,7 +3,6 @@
 use crate::bridges::{SEARCH, TWO, coupled, langenuen, lively, onset};
 use crate::patchwork::patchwork;
 use aerodeck::aerodynamics::RationalAdmittance;
-use aerodeck::files::bridge::FieldTable;
 use aerodeck::flutter::find_onset;
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
@@ -130,13 +129,7 @@ fn gusts(folder: &Path, runtimes: &[Runtime]) {
             .map(|n| n.name.clone())
             .collect(),
         gust_strips: Some(study.by_model.nodes.len()),
-        turbulence: Some(FieldTable {
-            step_s: field.step_s,
-            along_m: field.along_m,
-            from_middle: false,
-            mean_speed_m_s: None,
-            gusts: field.gusts,
-        }),
+        turbulence: Some(field),
         ..BridgeExportOptions::default()
     };
     let (model, export) = study.export(&wanted).unwrap();

@@ -57,9 +57,8 @@ fn three_routes_to_the_onset_of_the_plate() {
 /// Den Hartog: a vertical mode gallops where the aerodynamic damping `½ρVB(C'_L + C_D)` eats up its own, `2mζω`.
 #[test]
 fn galloping_of_a_bluff_section() {
-    use aerodeck::aerodynamics::quasi_steady::{
-        CoefficientRow, CoefficientsHeader, StaticCoefficients,
-    };
+    use aerodeck::aerodynamics::derivatives::TableHeader;
+    use aerodeck::aerodynamics::quasi_steady::{CoefficientRow, StaticCoefficients};
     let rows = [-10.0, -5.0, 0.0, 5.0, 10.0]
         .map(|angle_deg: f64| CoefficientRow {
             angle_deg,
@@ -68,7 +67,7 @@ fn galloping_of_a_bluff_section() {
             moment: 0.0,
         })
         .to_vec();
-    let table = StaticCoefficients::new("bluff", CoefficientsHeader::default(), rows).unwrap();
+    let table = StaticCoefficients::new("bluff", TableHeader::default(), rows).unwrap();
     let theory = QuasiSteady::new(table, Arms::default(), &Dof::TWO).unwrap();
     let s = SectionModel::table_4_1().structure().unwrap();
     let search = OnsetSearch {

@@ -3,7 +3,8 @@
 use aerodeck::aerodynamics::{RationalModel, Realizable, Realization};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
-use aerodeck::fmu::prescribed::{ForceAhead, KnownMotion, PrescribedForces, StripFlow};
+use aerodeck::fmu::prescribed::{KnownMotion, PrescribedForces, StripFlow};
+use aerodeck::fmu::variables::Dual;
 use aerodeck::identification::{FrequencyFit, fit_table};
 use aerodeck::section::{SectionModel, Structure, Translation};
 use nalgebra::{DMatrix, DVector};
@@ -71,14 +72,14 @@ fn radius(structure: &Structure, realization: &Realization, wind: f64, exchange:
         for point in state[first..].chunks_mut(per_point) {
             point[3] = known as f64;
         }
-        let mut found = vec![ForceAhead::default(); n];
+        let mut found = vec![Dual::default(); n];
         let rho = structure.air_density_kg_m3;
         forces
             .ahead(&state, &[flow], prediction * h, rho, &mut found)
             .unwrap();
         let mut y = DVector::zeros(3 * n);
         for i in 0..n {
-            (y[i], y[n + i], y[2 * n + i]) = (x[i], x[n + i], found[i].force);
+            (y[i], y[n + i], y[2 * n + i]) = (x[i], x[n + i], found[i].value);
         }
         let moved = &exact * &y;
         let acceleration = (&a * &y).rows(n, n).into_owned();

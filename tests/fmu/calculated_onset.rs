@@ -7,7 +7,7 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset, unwanted_growth};
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use aerodeck::identification::{Form, FrequencyFit, PoleSearch};
 
 const LIMIT: f64 = 60.0;
@@ -49,7 +49,7 @@ fn calculated_onsets_are_those_of_the_search() {
             let tested = Some(model.tested_range);
             let json = model.to_json().unwrap();
             let made = || {
-                let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default());
+                let resources = Resources::from_bytes(json.as_bytes(), [None; 3]);
                 let mut instance = Instance::new(resources.unwrap()).unwrap();
                 instance.enter_initialization();
                 instance

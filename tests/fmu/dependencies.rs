@@ -4,10 +4,9 @@
 use crate::bridges::{THREE, TWO, langenuen, lively, read};
 use crate::{models, three_dof};
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
-use aerodeck::files::bridge::FieldTable;
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Export;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use aerodeck::fmu::variables::{
     Causality, Dependency, DependencyKind, Role, StartValue, Variability, Variable, VariableTable,
 };
@@ -44,10 +43,7 @@ impl ProbedUnit {
         let json = model.to_json().unwrap();
         Self::new(what, move || {
             let gusts = gusts.as_deref();
-            let files = OptionFiles {
-                gusts,
-                ..OptionFiles::default()
-            };
+            let files = [None, gusts, None];
             Resources::from_bytes(json.as_bytes(), files).unwrap()
         })
     }
@@ -326,13 +322,7 @@ fn damped_bridges_in_gusts_depend_on_what_is_stated() {
     rows.for_each(|row| row.truncate(50));
     let wanted = BridgeExportOptions {
         gust_strips: Some(3),
-        turbulence: Some(FieldTable {
-            step_s: field.step_s,
-            from_middle: false,
-            mean_speed_m_s: None,
-            gusts: field.gusts,
-            along_m: field.along_m,
-        }),
+        turbulence: Some(field),
         ..BridgeExportOptions::default()
     };
     let (model, export) = study.export(&wanted).unwrap();

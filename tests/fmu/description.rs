@@ -6,7 +6,7 @@ use crate::models;
 use aerodeck::aerodynamics::Transfer;
 use aerodeck::fmu::description::model_description;
 use aerodeck::fmu::package::Label;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::units::ReducedFrequency;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ fn golden(kind: &str) -> PathBuf {
 }
 
 fn describe(json: &[u8]) -> String {
-    let resources = Resources::from_bytes(json, OptionFiles::default()).unwrap();
+    let resources = Resources::from_bytes(json, [None; 3]).unwrap();
     model_description(&resources, false, &Label::default()).unwrap()
 }
 

@@ -6,7 +6,7 @@ use aerodeck::fmu::description::model_description;
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::package::Label;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use aerodeck::fmu::variables::{Causality, ComputedNumber, Dependency, Formula, Known, Response};
 use aerodeck::section::Dof;
 use aerodeck::study::bridge::BridgeExportOptions;
@@ -41,7 +41,7 @@ static OF_MOTION: ComputedNumber = ComputedNumber::new(
 
 fn section(kind: &str) -> Resources {
     let json = std::fs::read(models::model_file(kind)).unwrap();
-    Resources::from_bytes(&json, OptionFiles::default()).unwrap()
+    Resources::from_bytes(&json, [None; 3]).unwrap()
 }
 
 fn bridge() -> Resources {
@@ -298,10 +298,7 @@ fn forces(model: &[u8], strips: usize, nodes: Vec<u32>) -> Resources {
         ..single.clone()
     };
     let options = options.to_json().unwrap();
-    let files = OptionFiles {
-        force: Some(options.as_bytes()),
-        ..OptionFiles::default()
-    };
+    let files = [Some(options.as_bytes()), None, None];
     Resources::from_bytes(model, files).unwrap()
 }
 

@@ -135,10 +135,7 @@ fn the_forces_of_every_girder_are_packed() {
         assert_eq!(forces.options.strips.len(), study.by_model.nodes.len());
         let json = forces.model.to_json().unwrap();
         let options = forces.options.to_json().unwrap();
-        let files = aerodeck::fmu::resources::OptionFiles {
-            force: Some(options.as_bytes()),
-            ..Default::default()
-        };
+        let files = [Some(options.as_bytes()), None, None];
         let resources = Resources::from_bytes(json.as_bytes(), files).unwrap();
         assert!(
             resources

@@ -15,14 +15,14 @@ use aerodeck::report::{
 use aerodeck::response::{Inputs, Outputs, Stepper};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
-use aerodeck::verdict::{DivergenceReading, Evidence, RequiredSpeed, Verdict};
+use aerodeck::verdict::{Divergence, Evidence, RequiredSpeed, Verdict};
 use quick_xml::events::Event;
 use std::f64::consts::TAU;
 use std::path::Path;
 
 /// A verdict against a required speed, which divergence below it does not meet.
 fn required(speed_m_s: f64) -> Verdict {
-    let below = DivergenceReading::at("the model", Some(0.9 * speed_m_s));
+    let below = Divergence::at("the model", Some(0.9 * speed_m_s));
     Verdict::judge(&Evidence {
         required: Some(RequiredSpeed { speed_m_s }),
         divergence: vec![below],

@@ -223,7 +223,7 @@ pub(crate) fn beam(nodes: usize, modes: usize) -> Bridge {
             })
             .collect(),
     };
-    let group = StripGroup {
+    let group: StripGroup = StripGroup {
         name: "girder".into(),
         width_m: 30.0,
         wind_factor: 1.0,
@@ -278,7 +278,7 @@ pub(crate) fn response() -> Job {
     let bridge = beam(100, 39);
     let field = turbulence_field(&problem(&bridge), 30.0, STEP_S, TEN_MINUTES, 1).expect("a field");
     Job::new(move || {
-        black_box(span_record(&problem(&bridge), &[50], 30.0, &field).expect("a response"));
+        black_box(span_record(&problem(&bridge), &[50], 30.0, STEP_S, &field).expect("a response"));
     })
 }
 

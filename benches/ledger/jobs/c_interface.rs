@@ -2,7 +2,7 @@
 
 use aerodeck::fmu::location::location_of;
 use aerodeck::fmu::package::Runtime;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::hint::black_box;
 use std::path::Path;
@@ -42,10 +42,7 @@ pub(crate) struct Unpacked {
 impl Unpacked {
     /// Of a section, with gusts where their file is given.
     pub(crate) fn of_section(json: &str, gusts: Option<&str>) -> Self {
-        let options = OptionFiles {
-            gusts: gusts.map(str::as_bytes),
-            ..OptionFiles::default()
-        };
+        let options = [None, gusts.map(str::as_bytes), None];
         let resources = Resources::from_bytes(json.as_bytes(), options).expect("resources");
         Self::new(
             resources,

@@ -6,7 +6,7 @@ use crate::entry::Job;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use aerodeck::response::{Inputs, Stepper};
 use aerodeck::state_space::{StateEquation, c2d};
 use nalgebra::DVector;
@@ -114,7 +114,7 @@ pub(crate) fn onset_discrete() -> Job {
 /// `onset_speed` after another mass.
 fn onset(kind: &str) -> Job {
     let json = text(kind);
-    let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default());
+    let resources = Resources::from_bytes(json.as_bytes(), [None; 3]);
     let mut instance = Instance::new(resources.expect("resources")).expect("an instance");
     let place = |name| instance.table().find_name(name).expect("a variable") as u32;
     let (mass, onset) = (place("mass"), place("onset_speed"));

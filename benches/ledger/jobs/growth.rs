@@ -90,7 +90,8 @@ pub(crate) fn buffeting(modes: u64) -> Job {
     finding(by_modes(modes), |bridge| {
         let problem = problem(bridge);
         let field = turbulence_field(&problem, SPEED_M_S, STEP_S, 4096, 1)?;
-        span_record(&problem, &[bridge.nodes.len() / 2], SPEED_M_S, &field)
+        let nodes = [bridge.nodes.len() / 2];
+        span_record(&problem, &nodes, SPEED_M_S, STEP_S, &field)
     })
 }
 

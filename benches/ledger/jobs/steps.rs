@@ -6,7 +6,7 @@ use crate::entry::Job;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::fmu::resources::Resources;
 use aerodeck::identification::{LEAST_CHOSEN, MOST_CHOSEN};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -101,10 +101,7 @@ pub(crate) fn gusts() -> Job {
 }
 
 fn archive_reference(name: &str, gusts: Option<&str>) -> u32 {
-    let options = OptionFiles {
-        gusts: gusts.map(str::as_bytes),
-        ..OptionFiles::default()
-    };
+    let options = [None, gusts.map(str::as_bytes), None];
     let text = text("continuous_laguerre");
     let resources = Resources::from_bytes(text.as_bytes(), options).expect("resources");
     resources.table.find_name(name).expect("a variable") as u32
@@ -217,10 +214,7 @@ pub(crate) fn as_many_sections() -> Job {
 
 fn running(force: Option<&str>) -> Instance {
     let json = text("continuous_laguerre");
-    let options = OptionFiles {
-        force: force.map(str::as_bytes),
-        ..OptionFiles::default()
-    };
+    let options = [force.map(str::as_bytes), None, None];
     let resources = Resources::from_bytes(json.as_bytes(), options).expect("resources");
     let mut instance = Instance::new(resources).expect("an instance");
     instance.enter_initialization();

@@ -30,6 +30,6 @@ pub use quasi_steady::{NonlinearRun, NonlinearSection, largest_difference};
 pub use response::{BuffetingResponse, SpanResponse, SpectrumCurve};
 pub use response::{part, peak_factor};
 pub use spectrum::{GustSpectrum, SpectrumFormula, SpectrumShape};
-pub use synthesis::{TurbulenceField, turbulence_field};
+pub use synthesis::turbulence_field;
 pub use time::{ComponentComparison, Ensemble, compare};
 pub use time::{TimePlan, check_plan, time_ensemble};

@@ -93,6 +93,12 @@ pub trait Transfer: Send + Sync {
     }
 }
 
+impl std::fmt::Debug for dyn Transfer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "forces of {:?}", self.dofs())
+    }
+}
+
 /// A force model with a state-space realisation.
 ///
 /// ```

@@ -61,8 +61,9 @@ pub struct BridgeMode {
 pub const MOST_WIND_FACTOR: f64 = 3.0;
 
 /// Nodes of one section in one wind.
-#[derive(Clone)]
-pub struct StripGroup {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StripGroup<Forces = Arc<dyn Transfer>> {
     /// Name of the section.
     pub name: String,
     /// Width `B`, m.
@@ -71,18 +72,20 @@ pub struct StripGroup {
     pub wind_factor: f64,
     /// Places of the nodes in [`Bridge::nodes`].
     pub nodes: Vec<usize>,
-    /// Self-excited forces, about the axis of rotation of the nodes.
-    pub forces: Arc<dyn Transfer>,
+    /// Self-excited forces, about the axis of rotation of the nodes; in files their place among those of the bridge.
+    pub forces: Forces,
 }
 
-impl std::fmt::Debug for StripGroup {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("StripGroup")
-            .field("name", &self.name)
-            .field("width_m", &self.width_m)
-            .field("wind_factor", &self.wind_factor)
-            .field("nodes", &self.nodes)
-            .finish_non_exhaustive()
+impl<Forces> StripGroup<Forces> {
+    /// The same nodes in other forces.
+    pub fn with_forces<Others>(&self, forces: Others) -> StripGroup<Others> {
+        StripGroup {
+            name: self.name.clone(),
+            width_m: self.width_m,
+            wind_factor: self.wind_factor,
+            nodes: self.nodes.clone(),
+            forces,
+        }
     }
 }
 

@@ -5,11 +5,11 @@
 //!
 //! ```
 //! # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_judgement::*; }
-//! use aerodeck::verdict::{DivergenceReading, Evidence, RequiredSpeed, Verdict};
+//! use aerodeck::verdict::{Divergence, Evidence, RequiredSpeed, Verdict};
 //!
 //! let mut evidence = Evidence::default();
 //! evidence.required = Some(RequiredSpeed { speed_m_s: 100.0 });
-//! evidence.divergence.push(DivergenceReading::at("the model", Some(79.9)));
+//! evidence.divergence.push(Divergence::at("the model", Some(79.9)));
 //! let verdict = Verdict::judge(&evidence);
 //! assert!(!verdict.is_met());
 //! assert!(verdict.headline.starts_with("✗ NOT MET, required 100 m/s: static divergence at 79.9 m/s"));
@@ -35,8 +35,8 @@ pub use critical::Critical;
 pub use critical_speed::{CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
-    DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation, ModesLeftOut,
-    Reach, RequiredSpeed, UntestedPart, UntestedParts,
+    Divergence, Evidence, FlutterReading, ForceBasis, MeanRotation, ModesLeftOut, Reach,
+    RequiredSpeed, StageFailure, UntestedPart, UntestedParts,
 };
 pub use outcome::{Below, Outcome};
 pub use sanity::{SanityLines, sanity_lines};

@@ -21,22 +21,6 @@ const MAX_MODES: usize = 500;
 /// Nodes at most.
 const MAX_NODES: usize = 20_000;
 
-/// Nodes of one section in one wind.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GroupOptions {
-    /// Name of the section.
-    pub name: String,
-    /// Width `B`, m.
-    pub width_m: f64,
-    /// Wind speed there over the input `wind_speed`.
-    pub wind_factor: f64,
-    /// Indices of the nodes.
-    pub nodes: Vec<usize>,
-    /// Place of its force model in [`BridgeOptions::forces`].
-    pub forces: usize,
-}
-
 /// A bridge as it is exported.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -55,8 +39,8 @@ pub struct BridgeOptions {
     /// Whether it is the structure alone, whose forces come from outside: nothing of wind is listed.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub structure_alone: bool,
-    /// Groups of nodes.
-    pub groups: Vec<GroupOptions>,
+    /// Groups of nodes, with the places of their force models in [`Self::forces`].
+    pub groups: Vec<StripGroup<usize>>,
     /// Force models of the groups.
     pub forces: Vec<Model>,
     /// Indices of the nodes with inputs and outputs.
@@ -94,18 +78,12 @@ impl BridgeOptions {
         // one for all groups of a section
         let shared = |m: &Model| -> Arc<dyn Transfer> { Arc::new(m.clone()) };
         let forces: Vec<_> = self.forces.iter().map(shared).collect();
-        let group = |g: &GroupOptions| {
+        let group = |g: &StripGroup<usize>| {
             let forces = forces.get(g.forces).ok_or_else(|| {
                 let expected = format!("a force model below {}", self.forces.len());
                 Error::input(format!("group {}", g.name), expected, g.forces.to_string())
             })?;
-            Ok(StripGroup {
-                name: g.name.clone(),
-                width_m: g.width_m,
-                wind_factor: g.wind_factor,
-                nodes: g.nodes.clone(),
-                forces: Arc::clone(forces),
-            })
+            Ok(g.with_forces(Arc::clone(forces)))
         };
         let groups = self.groups.iter().map(group).collect::<Result<_>>()?;
         let (nodes, modes) = (self.nodes.clone(), self.modes.clone());

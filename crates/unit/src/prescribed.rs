@@ -21,6 +21,7 @@ use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
 use crate::response::LANES;
 use crate::section::Dof;
+use crate::variables::Dual;
 use course::{COEFFICIENTS, MotionCubic, NUMBERS, POINTS};
 use filters::{FilterAdvance, FilterSeries, StripLanes};
 use nalgebra::DMatrix;
@@ -35,15 +36,6 @@ pub struct KnownMotion {
     pub values: [f64; 3],
     /// How many of them are known, one at least.
     pub known: usize,
-}
-
-/// A force and how fast it changes, per unit length.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ForceAhead {
-    /// N/m or N·m/m.
-    pub force: f64,
-    /// Its rate in steady wind, per second.
-    pub rate: f64,
 }
 
 /// Forces of a model on strips with a prescribed motion. The state is one list of numbers: see [`Self::rest`].
@@ -185,8 +177,8 @@ impl PrescribedForces {
         }
     }
 
-    /// Forces on all strips in the order of the degrees of freedom, `ahead_s` seconds after the newest motion, under its
-    /// wind and in air of this density (kg/m³). Before any motion was given they are zero.
+    /// Forces on all strips in the order of the degrees of freedom, N/m or N·m/m, with their rates in steady wind, per second: `ahead_s`
+    /// seconds after the newest motion, under its wind and in air of this density (kg/m³). Before any motion was given they are zero.
     ///
     /// # Errors
     /// [`Error::Input`] for a step of more than ten thousand parts over all strips; [`Error::Numerical`] beyond the range
@@ -197,10 +189,10 @@ impl PrescribedForces {
         strips: &[StripFlow],
         ahead_s: f64,
         density: f64,
-        forces: &mut [ForceAhead],
+        forces: &mut [Dual],
     ) -> Result<()> {
         if Self::points(state) == 0 {
-            forces.fill(ForceAhead::default());
+            forces.fill(Dual::default());
             return Ok(());
         }
         let (n, states) = (self.dofs.len(), self.realization.states());
@@ -282,13 +274,7 @@ impl PrescribedForces {
     }
 
     /// `½ρ s (V²(e₀ r + C z) + V B e₁ ṙ + B² e₂ r̈)` with the scale `s` of each force, and its rate.
-    fn forces(
-        &self,
-        filters: &[f64],
-        courses: &[MotionCubic],
-        air: Airflow,
-        forces: &mut [ForceAhead],
-    ) {
+    fn forces(&self, filters: &[f64], courses: &[MotionCubic], air: Airflow, forces: &mut [Dual]) {
         let (wind, width) = (air.wind_m_s, air.width_m);
         let mut motion = [[0.0; COEFFICIENTS]; Dof::THREE.len()];
         for (motion, course) in motion.iter_mut().zip(courses) {
@@ -313,17 +299,16 @@ impl PrescribedForces {
                         flow_rate
                             * (row(&c.a, k, &|m| filters[m]) + row(&c.b, k, &|j| motion[j][0]))
                     };
-                    ForceAhead {
-                        force: scale
-                            * (driven(0) + mass(0) + wind * wind * row(&c.c, i, &|k| filters[k])),
-                        rate: scale * (driven(1) + mass(1) + wind * wind * row(&c.c, i, &moves)),
+                    let lagging = |of: &dyn Fn(usize) -> f64| wind * wind * row(&c.c, i, of);
+                    Dual {
+                        value: scale * (driven(0) + mass(0) + lagging(&|k| filters[k])),
+                        slope: scale * (driven(1) + mass(1) + lagging(&moves)),
                     }
                 }
                 // held from sample to sample
-                Realization::Discrete(d) => ForceAhead {
-                    force: scale * wind * wind * row(&d.c, i, &|k| filters[k]),
-                    rate: 0.0,
-                },
+                Realization::Discrete(d) => {
+                    Dual::from(scale * wind * wind * row(&d.c, i, &|k| filters[k]))
+                }
             };
         }
     }

@@ -19,19 +19,11 @@ use uuid::Uuid;
 
 /// The file of the gust forces in `resources/`; an archive without it takes no gusts.
 pub const GUST_FILE: &str = "gusts.json";
+/// Files beside the model that say what is exported of it: [`ForceOptions`], which make it a unit of forces alone, [`GustForce`],
+/// [`OnsetBounds`].
+pub const OPTION_FILES: [&str; 3] = [FORCE_FILE, GUST_FILE, BOUNDS_FILE];
 /// Shortest step of a sampled model, in widths that the wind passes: a thousandth of the finest of wind tunnels.
 const SHORTEST_SAMPLE: f64 = 1e-6;
-
-/// Files beside the model that say what is exported of it, as bytes.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct OptionFiles<'a> {
-    /// What makes it a unit of forces alone, see [`ForceOptions`].
-    pub force: Option<&'a [u8]>,
-    /// Forces of gusts, see [`GustForce`].
-    pub gusts: Option<&'a [u8]>,
-    /// Interval of the onset, see [`OnsetBounds`].
-    pub bounds: Option<&'a [u8]>,
-}
 
 /// What is read once, at instantiation.
 #[derive(Debug)]
@@ -100,34 +92,29 @@ impl Resources {
             return Self::of_bridge(&model, &bridge, turbulence.as_deref())
                 .map_err(|e| e.in_file(folder.join(BRIDGE_FILE)));
         }
-        let (force, gusts) = (beside(FORCE_FILE)?, beside(GUST_FILE)?);
-        let bounds = beside(BOUNDS_FILE)?;
-        let options = OptionFiles {
-            force: force.as_deref(),
-            gusts: gusts.as_deref(),
-            bounds: bounds.as_deref(),
-        };
+        let [force, gusts, bounds] = OPTION_FILES.map(beside);
+        let options = [force?, gusts?, bounds?];
+        let options = options.each_ref().map(Option::as_deref);
         Self::from_bytes(&model, options).map_err(|e| e.in_file(&file))
     }
 
-    /// The same from the bytes of the model's file and of those beside it.
+    /// The same from the bytes of the model's file and of the [`OPTION_FILES`] beside it.
     ///
     /// # Errors
     /// [`Error::Input`] for bytes that are no trained model, or no options that fit it.
-    pub fn from_bytes(bytes: &[u8], options: OptionFiles<'_>) -> Result<Self> {
+    pub fn from_bytes(bytes: &[u8], options: [Option<&[u8]>; 3]) -> Result<Self> {
+        let [force, gusts, bounds] = options;
         let model = TrainedModel::from_json(text(bytes)?)?;
         check_sampling(&model)?;
-        let force = beside_model(FORCE_FILE, options.force, ForceOptions::from_json)?;
-        let gusts = |text: &str| gust_force(text, &model);
-        let gusts = beside_model(GUST_FILE, options.gusts, gusts)?;
+        let force = beside_model(FORCE_FILE, force, ForceOptions::from_json)?;
+        let gusts = beside_model(GUST_FILE, gusts, |text| gust_force(text, &model))?;
         for further in force.iter().flat_map(|f| &f.further) {
             check_further(further, gusts.is_some()).map_err(|e| e.within(FORCE_FILE))?;
         }
-        let bounds = beside_model(BOUNDS_FILE, options.bounds, OnsetBounds::from_json)?;
+        let bounds = beside_model(BOUNDS_FILE, bounds, OnsetBounds::from_json)?;
         let table = VariableTable::new(&model, force.as_ref(), gusts.as_ref(), bounds)?;
-        let of_options = [options.force, options.gusts, options.bounds];
         let files = std::iter::once(bytes);
-        let files: Vec<&[u8]> = files.chain(of_options.into_iter().flatten()).collect();
+        let files: Vec<&[u8]> = files.chain(options.into_iter().flatten()).collect();
         let guid = identity::guid(&table, &files);
         Ok(Self {
             force,
@@ -294,10 +281,7 @@ mod tests {
         let model = std::fs::read(model).unwrap();
         let options = ForceOptions::single(31.0).to_json().unwrap();
         let options = options.replacen("31.0", "-1.0", 1);
-        let files = OptionFiles {
-            force: Some(options.as_bytes()),
-            ..OptionFiles::default()
-        };
+        let files = [Some(options.as_bytes()), None, None];
         let said = Resources::from_bytes(&model, files)
             .err()
             .map(|e| e.to_string());

@@ -3,13 +3,12 @@
 use super::buffeting_page::{self, forces, of_motion};
 use super::files::{BUFFETING_PAGE, BridgeArgs};
 use super::flutter::renew;
-use crate::buffeting::TurbulenceField;
 use crate::cli::headline;
 use crate::cli::vocabulary::{
     Answer, BridgeStudy, Error, Finding, Progress, Result, TextTable, Verdict, csv_cell, rendered,
     sentences, warn,
 };
-use crate::files::bridge::read_field;
+use crate::files::bridge::{FieldTable, read_field};
 use crate::study::bridge::{BridgeBuffeting, BuffetingBlock};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -242,7 +241,7 @@ fn spectra_csv(results: &BridgeBuffeting) -> String {
     text
 }
 
-fn field_csv(field: &TurbulenceField) -> String {
+fn field_csv(field: &FieldTable) -> String {
     let mut text = "# turbulence along the span, m/s; u along the wind, w up; columns by the place along the girder, m\ntime_s".to_owned();
     for (name, rows) in ["u", "w"].into_iter().zip(&field.gusts) {
         for along in field.along_m.iter().take(rows.len()) {

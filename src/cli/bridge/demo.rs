@@ -13,7 +13,8 @@ use crate::cli::vocabulary::{
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::package;
 use crate::study::bridge::{BridgeExportOptions, demo_bridge_text};
-use crate::study::{KnownUncertainty, RecordSet, StageFailure, demo_study_text};
+use crate::study::{KnownUncertainty, RecordSet, demo_study_text};
+use crate::verdict::StageFailure;
 use std::path::Path;
 
 const BRIDGE_FILE: &str = "bridge.toml";

@@ -70,7 +70,7 @@ fn archives_are_reproducible_and_complete() {
 fn the_page_names_everything_and_loads_nothing() {
     for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
         let json = model(kind).to_json().unwrap();
-        let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+        let resources = Resources::from_bytes(json.as_bytes(), [None; 3]).unwrap();
         let xml = model_description(&resources, false, &Label::default()).unwrap();
         let xml = Element::parse(&xml).unwrap();
         let page = documentation::documentation(&resources, &embedded(), &xml, None).unwrap();
@@ -291,7 +291,7 @@ fn a_model_that_grows_where_nothing_was_tested_is_exported_only_on_request() {
 fn an_instance_says_where_it_grows_when_initialised_and_after_its_parameters_have_changed() {
     use crate::fmu::instance::Instance;
     let resources = |model: &TrainedModel| {
-        Resources::from_bytes(model.to_json().unwrap().as_bytes(), OptionFiles::default()).unwrap()
+        Resources::from_bytes(model.to_json().unwrap().as_bytes(), [None; 3]).unwrap()
     };
     let growth = |notices: Vec<String>| {
         let about = |n: &String| n.contains("grows where it should not");
@@ -346,7 +346,7 @@ fn control_characters_stay_out_of_the_description() {
         generated: None,
     };
     let json = model.to_json().unwrap();
-    let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+    let resources = Resources::from_bytes(json.as_bytes(), [None; 3]).unwrap();
     let three = description_fmi3::model_description(&resources, &label).unwrap();
     let two = model_description(&resources, false, &label).unwrap();
     for text in [&two, &three] {

@@ -6,8 +6,8 @@ use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::Bridge;
 use crate::buffeting::{
     BuffetingProblem, Coherence, FrequencyDomain, Gust, SpanEnsemble, SpanPlan, SpanRecord,
-    SpanResponse, SpectrumCurve, Turbulence, TurbulenceField, check_plan, part, span_ensemble,
-    span_record, turbulence_field,
+    SpanResponse, SpectrumCurve, Turbulence, check_plan, part, span_ensemble, span_record,
+    turbulence_field,
 };
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
@@ -245,23 +245,26 @@ impl BridgeStudy {
         field: &FieldTable,
     ) -> Result<SpanRecord> {
         let field = self.at_nodes(field)?;
-        let field = TurbulenceField {
-            step_s: field.step_s,
-            along_m: field.along_m,
-            gusts: field.gusts,
-        };
         let problem = self.problem(&self.by_model, block)?;
-        span_record(&problem, &self.named(&block.nodes)?, speed_m_s, &field)
+        let nodes = self.named(&block.nodes)?;
+        span_record(&problem, &nodes, speed_m_s, field.step_s, &field.gusts)
     }
 
     /// The turbulence of the first record.
     ///
     /// # Errors
     /// [`Error::Input`] with the key of the block that cannot be.
-    pub fn first_field(&self, block: &BuffetingBlock, speed_m_s: f64) -> Result<TurbulenceField> {
+    pub fn first_field(&self, block: &BuffetingBlock, speed_m_s: f64) -> Result<FieldTable> {
         let plan = &block.time;
         let problem = self.problem(&self.by_model, block)?;
         let samples = plan.record_samples(&problem, speed_m_s)?;
-        turbulence_field(&problem, speed_m_s, plan.step_s, samples, plan.seed)
+        let gusts = turbulence_field(&problem, speed_m_s, plan.step_s, samples, plan.seed)?;
+        Ok(FieldTable {
+            step_s: plan.step_s,
+            along_m: self.by_model.nodes.iter().map(|n| n.along_m).collect(),
+            from_middle: false,
+            mean_speed_m_s: Some(speed_m_s),
+            gusts,
+        })
     }
 }

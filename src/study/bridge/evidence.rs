@@ -11,8 +11,8 @@ use crate::study::bridge::BridgeStudy;
 use crate::study::bridge::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::units::ReducedFrequencyRange;
 use crate::verdict::{
-    CriticalSpeed, DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, MeanRotation,
-    ModesLeftOut, Reach, UntestedPart, UntestedParts, Verdict,
+    CriticalSpeed, Divergence, Evidence, FlutterReading, ForceBasis, MeanRotation, ModesLeftOut,
+    Reach, StageFailure, UntestedPart, UntestedParts, Verdict,
 };
 
 /// Whose forces the two routes take, in the order of the answers.
@@ -32,11 +32,11 @@ impl BridgeStudy {
         {
             flutter.reverse();
         }
-        let mut divergence = vec![DivergenceReading::at(MODELS, results.divergence_m_s)];
-        divergence.extend(results.table_divergence.iter().map(|d| DivergenceReading {
+        let mut divergence = vec![Divergence::at(MODELS, results.divergence_m_s)];
+        divergence.extend(results.table_divergence.iter().map(|d| Divergence {
             lower_m_s: d.lower_m_s,
             assumed: Some(d.assumed.clone()),
-            ..DivergenceReading::at(TABLES, d.speed_m_s)
+            ..Divergence::at(TABLES, d.speed_m_s)
         }));
         let mut remarks = self.notes.clone();
         let stated = self.sections.iter().all(|s| s.angle_deg.is_some());
@@ -117,12 +117,11 @@ fn judges_nothing(search: &FlutterSearch) -> bool {
     matches!(search, FlutterSearch::StableUpTo(range) if range.is_empty())
 }
 
-fn failure(text: &str) -> Failure {
+fn failure(text: &str) -> StageFailure {
     let (stage, reason) = text.split_once(": ").unwrap_or(("the search", text));
-    Failure {
-        stage: stage.to_owned(),
-        reason: reason.to_owned(),
-        bears_on_answer: !BESIDE.contains(&stage),
+    StageFailure {
+        beside_answer: BESIDE.contains(&stage),
+        ..StageFailure::new(stage, reason)
     }
 }
 
@@ -148,10 +147,7 @@ impl BridgeStudy {
         };
         let with_main = |group: &StripGroup| match is_tested(group) {
             true => group.clone(),
-            false => StripGroup {
-                forces: main.forces.clone(),
-                ..group.clone()
-            },
+            false => group.with_forces(main.forces.clone()),
         };
         let mut as_tested: Vec<StripGroup> = bridge.groups.iter().map(with_main).collect();
         as_tested.extend(self.in_no_section(main));

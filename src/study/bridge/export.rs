@@ -11,7 +11,7 @@ use crate::error::{Error, Result, ensure};
 use crate::files::bridge::FieldTable;
 use crate::flutter::{FlutterSearch, OnsetInterval, divergence_with_forces, unwanted_growth_below};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
-use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
+use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::onset_start::{OnsetStart, simulated_onset};
 use crate::fmu::package::Export;
@@ -134,13 +134,7 @@ impl BridgeStudy {
         let critical = found.critical();
         let motion = critical.map(|at| motion_at_onset(bridge, &bridge.forces(), at));
         let groups = bridge.groups.iter().zip(&self.section_of_group);
-        let groups = groups.map(|(g, section)| GroupOptions {
-            name: g.name.clone(),
-            width_m: g.width_m,
-            wind_factor: g.wind_factor,
-            nodes: g.nodes.clone(),
-            forces: *section,
-        });
+        let groups = groups.map(|(group, section)| group.with_forces(*section));
         Ok(BridgeOptions {
             name: self.file.name.clone(),
             air_density_kg_m3: bridge.air_density_kg_m3,

@@ -20,7 +20,7 @@ use std::sync::Arc;
 const FLAT_PLATE: &str = "flat plate";
 
 /// Forces of a section, by table and by model.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct SectionForceModels {
     /// Between the points of the table, or the flat plate, exactly.
     pub table: Option<Arc<dyn Transfer>>,
@@ -46,14 +46,6 @@ pub struct SectionForceModels {
     pub unconstrained: Option<Arc<dyn Transfer>>,
     /// How far the data leave the model open, or why that is not known; `None` for stated coefficients.
     pub uncertainty: std::result::Result<Option<Box<ModelUncertainty>>, String>,
-}
-
-impl std::fmt::Debug for SectionForceModels {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("SectionForces")
-            .field("tested", &self.tested)
-            .finish_non_exhaustive()
-    }
 }
 
 impl SectionForceModels {

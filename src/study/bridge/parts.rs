@@ -5,7 +5,7 @@ use super::similarity::equivalent_section;
 use crate::aerodynamics::{GustForce, RationalAdmittance, RationalModel, Transfer as _};
 use crate::bridge::StripGroup;
 use crate::error::{Error, Result, ensure};
-use crate::fmu::bridge_options::{BridgeOptions, GroupOptions, node_number};
+use crate::fmu::bridge_options::{BridgeOptions, node_number};
 use crate::fmu::force_options::{ForceOptions, FurtherModel, StripOptions};
 use crate::fmu::package::{Export, FmiVersion, Label, Runtime, package};
 use crate::fmu::ssp::{Connection, System, SystemComponent};
@@ -56,7 +56,7 @@ impl BridgeStudy {
         let width_m = self.by_model.width_m();
         let alone = |bridge: BridgeOptions| BridgeOptions {
             structure_alone: true,
-            groups: vec![GroupOptions {
+            groups: vec![StripGroup {
                 name: "no wind".to_owned(),
                 width_m,
                 wind_factor: 1.0,

@@ -13,7 +13,7 @@ use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
 use crate::response::{Inputs, Stepper};
 use crate::section::{Dof, Structure};
-use crate::verdict::{DivergenceReading, Evidence, FlutterReading, ForceBasis, Verdict};
+use crate::verdict::{Divergence, Evidence, FlutterReading, ForceBasis, Verdict};
 use serde::Serialize;
 
 /// Agreement that halving the step has to reach.
@@ -97,7 +97,7 @@ pub(super) fn evidence(study: &WindStudy, onset: &QuasiSteadyOnset) -> Evidence 
     };
     match onset.equilibrium_end {
         Some(EquilibriumEnd::Divergence { speed_m_s, .. }) => {
-            let at = DivergenceReading::at(forces, Some(speed_m_s));
+            let at = Divergence::at(forces, Some(speed_m_s));
             evidence.divergence.push(at);
         }
         Some(end @ EquilibriumEnd::OutsideTable { .. }) => evidence.remarks.push(end.explain()),
@@ -194,8 +194,8 @@ fn gusts(
     // an even number of samples that reaches beyond the end
     let samples = 2 * (0.5 * run.duration_s / run.step_s).ceil() as usize + 2;
     let (speed, step_s) = (run.wind_speed_m_s, run.step_s);
-    let field = turbulence_field(&problem, speed, step_s, samples.max(16), run.seed)?;
-    let [along, vertical] = field.gusts.map(|rows| rows.concat());
+    let gusts = turbulence_field(&problem, speed, step_s, samples.max(16), run.seed)?;
+    let [along, vertical] = gusts.map(|rows| rows.concat());
     GustSeries::new(step_s, along, vertical)
 }
 

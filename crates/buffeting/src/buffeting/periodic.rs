@@ -12,7 +12,7 @@
 
 use super::problem::BuffetingProblem;
 use super::response::{by_node, part};
-use super::synthesis::{TurbulenceField, parts_in_time};
+use super::synthesis::parts_in_time;
 use super::time::{all_records, root_and_error, too_short};
 use crate::aerodynamics::GustComponent;
 use crate::aeroelastic::CoupledSection;
@@ -137,7 +137,7 @@ pub struct SpanRecord {
     pub peak_factor: Vec<[f64; 3]>,
 }
 
-/// The response to one field, as one period of a periodic process.
+/// The response to one field of gusts `u`, `w`, a row per node, as one period of a periodic process.
 ///
 /// # Errors
 /// [`Error::Input`] for a field of other nodes and parts that do not fit together; [`Error::Unstable`] when the bridge is
@@ -146,23 +146,24 @@ pub fn span_record(
     problem: &BuffetingProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
-    field: &TurbulenceField,
+    step_s: f64,
+    gusts: &[Vec<Vec<f64>>; 2],
 ) -> Result<SpanRecord> {
-    let (count, samples) = (problem.nodes.len(), field.samples());
+    let (count, samples) = (problem.nodes.len(), gusts[0].first().map_or(0, Vec::len));
     let fits =
         |rows: &Vec<Vec<f64>>| rows.len() == count && rows.iter().all(|r| r.len() == samples);
-    if samples < 2 || !field.gusts.iter().all(fits) {
-        let [wanted, found] = [count, field.gusts[0].len()].map(|n| counted(n, "node"));
+    if samples < 2 || !gusts.iter().all(fits) {
+        let [wanted, found] = [count, gusts[0].len()].map(|n| counted(n, "node"));
         let expected = format!("gusts at {wanted}, as many samples at each");
         return Err(Error::input("turbulence field", expected, found));
     }
     let (coupled, slowest) = problem.coupled(speed_m_s)?;
-    let bridge = PeriodicBridge::new(problem, &coupled, nodes, speed_m_s, field.step_s, samples)?;
+    let bridge = PeriodicBridge::new(problem, &coupled, nodes, speed_m_s, step_s, samples)?;
     let found = bridge.run(samples, |component| {
-        let rows = &field.gusts[component as usize];
+        let rows = &gusts[component as usize];
         threads::each(rows, true, |row| bridge.amplitudes(row))
     });
-    let record_s = samples as f64 * field.step_s;
+    let record_s = samples as f64 * step_s;
     let factor = |row: usize| part(found[row].1, found[row].0.sqrt(), 0.0);
     Ok(SpanRecord {
         nodes: problem.names_of(nodes),

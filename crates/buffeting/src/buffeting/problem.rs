@@ -12,7 +12,7 @@ use crate::aerodynamics::GustComponent;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
-use crate::bridge::{Bridge, ModalForces, Node};
+use crate::bridge::{Bridge, ModalForces, Node, StripGroup};
 use crate::error::{Error, Result, counted, ensure, positive};
 use crate::section::{Dof, Structure};
 use crate::units::ReducedFrequency;
@@ -106,15 +106,8 @@ pub struct BuffetingProblem<'a> {
     pub(super) line_rule: &'static [(f64, f64)],
 }
 
-/// Nodes of one width in one wind.
-pub(super) struct BlownStrips {
-    width_m: f64,
-    /// Wind there over the mean wind.
-    pub(super) wind_factor: f64,
-    pub(super) nodes: Vec<usize>,
-    /// Force per unit length on the motions of a node by a gust of 1 m/s of each component in a mean wind of 1 m/s.
-    per_length: DMatrix<f64>,
-}
+/// Strips with the force per unit length on the motions of a node by a gust of 1 m/s of each component in a mean wind of 1 m/s.
+type BlownStrips = StripGroup<DMatrix<f64>>;
 
 /// Self-excited forces on the coordinates.
 enum SelfExcited<'a> {
@@ -154,16 +147,18 @@ impl<'a> BuffetingProblem<'a> {
         let gusts = structure.forces_at_axis(gusts);
         let half_rho = 0.5 * structure.air_density_kg_m3;
         let force = |i: usize, c| half_rho * dofs[i].force_scale(width_m) * gusts[(i, c)];
+        let name = "section".to_owned();
         let nodes = vec![Node {
-            name: "section".to_owned(),
+            name: name.clone(),
             along_m: 0.0,
             length_m: 1.0,
         }];
-        let strips = vec![BlownStrips {
+        let strips = vec![StripGroup {
+            name,
             width_m,
             wind_factor: 1.0,
             nodes: vec![0],
-            per_length: DMatrix::from_fn(n, 2, force),
+            forces: DMatrix::from_fn(n, 2, force),
         }];
         let shapes = DMatrix::identity(n, n);
         Ok(Self {
@@ -202,12 +197,7 @@ impl<'a> BuffetingProblem<'a> {
         let strips = bridge.groups.iter().zip(gust_matrices).map(|(g, matrix)| {
             let half_rho = 0.5 * bridge.air_density_kg_m3 * g.wind_factor;
             let scale = |i: usize| half_rho * Dof::THREE[i].force_scale(g.width_m);
-            BlownStrips {
-                width_m: g.width_m,
-                wind_factor: g.wind_factor,
-                nodes: g.nodes.clone(),
-                per_length: DMatrix::from_fn(3, 2, |i, c| scale(i) * matrix[i][c]),
-            }
+            g.with_forces(DMatrix::from_fn(3, 2, |i, c| scale(i) * matrix[i][c]))
         });
         let strips: Vec<_> = strips.filter(|s| s.wind_factor != 0.0).collect();
         let shapes = bridge.shapes_at(&(0..bridge.nodes.len()).collect::<Vec<_>>());
@@ -316,7 +306,7 @@ fn gust_forces(nodes: &[Node], shapes: &DMatrix<f64>, strips: &[BlownStrips]) ->
         let mut forces = DMatrix::zeros(nodes.len(), shapes.ncols());
         for strips in strips {
             for &n in &strips.nodes {
-                let force = strips.per_length.column(component) * nodes[n].length_m;
+                let force = strips.forces.column(component) * nodes[n].length_m;
                 forces.set_row(n, &force.tr_mul(&shapes.rows(each * n, each)));
             }
         }

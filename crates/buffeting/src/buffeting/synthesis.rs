@@ -23,26 +23,8 @@ const SAMPLES: std::ops::RangeInclusive<usize> = 16..=1 << 24;
 /// Numbers of a record at all nodes at most: four gigabytes.
 const NUMBERS_AT_MOST: usize = 1 << 29;
 
-/// Turbulence at every node.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TurbulenceField {
-    /// Time step, s.
-    pub step_s: f64,
-    /// Place of each node along the girder, m.
-    pub along_m: Vec<f64>,
-    /// `u` then `w`, m/s: a row of samples per node.
-    pub gusts: [Vec<Vec<f64>>; 2],
-}
-
-impl TurbulenceField {
-    /// Samples at each node.
-    pub fn samples(&self) -> usize {
-        self.gusts[0].first().map_or(0, Vec::len)
-    }
-}
-
-/// One period of `samples` samples, an even number, every `step_s` seconds at a mean wind speed, at every node. The same seed gives
-/// the same field.
+/// Turbulence `u`, `w`, m/s, a row per node: one period of `samples` samples, an even number, every `step_s` seconds at a mean wind
+/// speed. The same seed gives the same gusts.
 ///
 /// # Errors
 /// [`Error::Input`] for a step that is not positive or longer than a quarter of the shortest period, and a number of samples that is odd or not between 16 and 2²⁴.
@@ -52,20 +34,15 @@ pub fn turbulence_field(
     step_s: f64,
     samples: usize,
     seed: u64,
-) -> Result<TurbulenceField> {
+) -> Result<[Vec<Vec<f64>>; 2]> {
     problem.check_record(speed_m_s, step_s, samples)?;
     let fourier = Fourier::new(samples);
-    let gusts = GustComponent::BOTH.map(|component| {
+    Ok(GustComponent::BOTH.map(|component| {
         let mut rows = problem.coefficients(component, speed_m_s, step_s, samples, seed);
         threads::in_parts(&mut rows, 1, |_, row| {
             in_time(&fourier, std::mem::take(&mut row[0]))
         })
-    });
-    Ok(TurbulenceField {
-        step_s,
-        along_m: problem.nodes.iter().map(|n| n.along_m).collect(),
-        gusts,
-    })
+    }))
 }
 
 /// The real signal of which the numbers of the positive frequencies are twice the Fourier coefficients.

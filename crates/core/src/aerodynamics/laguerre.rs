@@ -9,5 +9,5 @@ mod guidelines;
 pub use bank::FilterBank;
 pub use continuous::{FilterTerm, LaguerreModel};
 pub use discrete::{DiscreteLaguerre, DiscreteTerm};
-pub use discrete::{Recursion, discrete_filter_matrices, impulse_response};
+pub use discrete::{advance_filters, discrete_filter_matrices, impulse_response};
 pub use guidelines::{alpha_lower_bound, discrete_memory};

@@ -9,7 +9,7 @@ pub mod coefficients;
 mod linear;
 
 pub use arms::Arms;
-pub use coefficients::{CoefficientRow, CoefficientsAt, CoefficientsHeader, StaticCoefficients};
+pub use coefficients::{CoefficientRow, CoefficientsAt, StaticCoefficients};
 pub use linear::LinearQuasiSteady;
 
 use crate::error::{Result, ensure};

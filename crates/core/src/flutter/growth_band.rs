@@ -36,10 +36,9 @@ impl GrowthBand {
 
     /// The band in words.
     pub fn explain(&self) -> String {
-        let tested = if self.extrapolated() {
-            ", outside the tested range"
-        } else {
-            ""
+        let tested = match self.extrapolated() {
+            true => ", outside the tested range",
+            false => "",
         };
         let below = if self.from_start { "at or below " } else { "" };
         format!(

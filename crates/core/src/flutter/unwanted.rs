@@ -19,6 +19,9 @@ const BELOW: f64 = 1e-6;
 /// What a scan from nearly still air to the onset found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct UnwantedGrowth {
+    /// Force model, where there are several.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub model: String,
     /// The scan goes up to the onset, or to the highest speed where there is none, m/s.
     pub scanned_to_m_s: f64,
     /// Bands below it in which the section grows by extrapolation alone.
@@ -79,6 +82,7 @@ pub fn unwanted_growth_below(
     let bands = Scan::new("", section, tested).bands(limit * BEYOND, false, below)?;
     let (bands, own): (Vec<_>, Vec<_>) = bands.into_iter().partition(GrowthBand::extrapolated);
     Ok(UnwantedGrowth {
+        model: String::new(),
         scanned_to_m_s: limit,
         bands,
         proved: all_speeds_are_known(section),
@@ -95,21 +99,17 @@ impl UnwantedGrowth {
     /// At which speeds, and why; without the full stop.
     pub fn explain(&self) -> String {
         if self.is_none() {
+            let but = self.instability_from_m_s.map_or(String::new(), |from| {
+                format!(" but that of the instability itself, which the model carries down to {from:.3} m/s")
+            });
+            let proved = match self.proved {
+                true => ", proved for the model",
+                false => "",
+            };
             let to = self.scanned_to_m_s;
-            let proved = if self.proved {
-                ", proved for the model"
-            } else {
-                ""
-            };
-            return match self.instability_from_m_s {
-                None => {
-                    format!("no growing oscillation from nearly still air to {to:.3} m/s{proved}")
-                }
-                Some(from) => format!(
-                    "no growing oscillation from nearly still air to {to:.3} m/s but that of the instability itself, which the model \
-                     carries down to {from:.3} m/s{proved}"
-                ),
-            };
+            return format!(
+                "no growing oscillation from nearly still air to {to:.3} m/s{but}{proved}"
+            );
         }
         let each: Vec<String> = self.bands.iter().map(GrowthBand::explain).collect();
         format!(

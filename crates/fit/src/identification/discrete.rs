@@ -11,7 +11,9 @@ use super::time::pass::{Chunk, ColumnOrder, Columns, OnProgress, Pass, PassPlan,
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
-use crate::aerodynamics::laguerre::{DiscreteTerm, Recursion, alpha_lower_bound, discrete_memory};
+use crate::aerodynamics::laguerre::{
+    DiscreteTerm, advance_filters, alpha_lower_bound, discrete_memory,
+};
 use crate::error::{Result, counted, ensure};
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -170,9 +172,9 @@ pub(crate) fn discrete_pass(
 }
 
 /// Columns of the discrete model by the recursion (2.33); a candidate is a decay factor for each input.
-struct DiscreteColumns {
+struct DiscreteColumns<'a> {
     /// One per candidate and input.
-    recursions: Vec<Vec<Recursion>>,
+    alphas: &'a [Vec<f64>],
     filters: usize,
     /// The constant, if there is one.
     ones: Option<Vec<f64>>,
@@ -182,12 +184,11 @@ struct DiscreteColumns {
     columns: Vec<Vec<f64>>,
 }
 
-impl DiscreteColumns {
-    fn new(alphas: &[Vec<f64>], order: ColumnOrder) -> Self {
-        let recursions = |alphas: &Vec<f64>| alphas.iter().map(|a| Recursion::new(*a)).collect();
+impl<'a> DiscreteColumns<'a> {
+    fn new(alphas: &'a [Vec<f64>], order: ColumnOrder) -> Self {
         let (inputs, filters) = (order.inputs, order.per_input);
         Self {
-            recursions: alphas.iter().map(recursions).collect(),
+            alphas,
             filters,
             ones: order.constant.then(|| vec![1.0; BLOCK_ROWS]),
             states: vec![vec![vec![0.0; filters]; inputs]; alphas.len()],
@@ -196,9 +197,9 @@ impl DiscreteColumns {
     }
 }
 
-impl Columns for DiscreteColumns {
+impl Columns for DiscreteColumns<'_> {
     fn candidates(&self) -> usize {
-        self.recursions.len()
+        self.alphas.len()
     }
 
     fn advance(&mut self, _: &Chunk<'_>, _: &[usize]) {}
@@ -211,8 +212,8 @@ impl Columns for DiscreteColumns {
     ) -> Vec<&'a [f64]> {
         for &j in active {
             let state = &mut self.states[candidate][j];
-            let recursion = self.recursions[candidate][j];
-            recursion.advance(state, chunk.motion[j], &mut self.columns[j], BLOCK_ROWS);
+            let (alpha, columns) = (self.alphas[candidate][j], &mut self.columns[j]);
+            advance_filters(alpha, state, chunk.motion[j], columns, BLOCK_ROWS);
         }
         let rows = chunk.rows();
         let mut columns: Vec<&[f64]> = Vec::new();

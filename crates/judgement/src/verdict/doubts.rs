@@ -2,7 +2,7 @@
 
 use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
-use super::evidence::{Evidence, Failure, FlutterReading, ForceBasis, RequiredSpeed};
+use super::evidence::{Evidence, FlutterReading, ForceBasis, RequiredSpeed, StageFailure};
 use super::reasons::{
     constraints, contradiction, doubted_divergence, left_out, not_judged_below, of_divergence,
     untested,
@@ -216,14 +216,14 @@ impl Evidence {
     }
 
     fn of_input(&self, critical: &Critical) -> Vec<Doubt> {
-        let of_failure = |f: &Failure| {
-            let severity = Severity::severe_if(f.bears_on_answer);
+        let of_failure = |f: &StageFailure| {
+            let severity = Severity::severe_if(!f.beside_answer);
             let kind = DoubtKind::StageFailed {
                 stage: f.stage.clone(),
                 reason: f.reason.clone(),
             };
-            let text = format!("FAILED {}: {}", f.stage, f.reason);
-            Doubt::new(severity, kind, text).settled_by(format!("{} without a failure", f.stage))
+            let settled = format!("{} without a failure", f.stage);
+            Doubt::new(severity, kind, f.explain()).settled_by(settled)
         };
         let mut all: Vec<Doubt> = self.failures.iter().map(of_failure).collect();
         all.extend(self.implausible.iter().map(|finding| {

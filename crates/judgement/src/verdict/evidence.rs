@@ -51,13 +51,13 @@ pub struct Evidence {
     /// Where the first of these searches ended, m/s; `None` where it went as far as its data.
     pub searched_to_m_s: Option<f64>,
     /// Static divergence, by each of the forces.
-    pub divergence: Vec<DivergenceReading>,
+    pub divergence: Vec<Divergence>,
     /// Galloping by quasi-steady theory, where static coefficients are given and it was found.
     pub galloping: Option<CriticalSpeed>,
     /// Growth of the first of the readings below its onset, where nothing was tested; `None` where nobody looked.
     pub growth: Option<UnwantedGrowth>,
     /// Stages that failed.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<StageFailure>,
     /// What constraints on the fit did to the onset.
     pub constraints: Option<MovedOnset>,
     /// Parts of the structure whose forces rest on no test, beside others that were tested.
@@ -184,21 +184,25 @@ impl FlutterReading {
 }
 
 /// Static divergence by some forces.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DivergenceReading {
-    /// Whose forces, as part of a sentence.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Divergence {
+    /// Whose forces: a force model, or, in evidence, part of a sentence.
+    #[serde(rename = "model")]
     pub forces: String,
     /// Speed, m/s; `None` where there is none.
     pub speed_m_s: Option<f64>,
-    /// The speed that is left when what was assumed about steady flow is as wrong as it may be, m/s.
+    /// The speed that is left when what was assumed about steady flow is as wrong as on a flat plate, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub lower_m_s: Option<f64>,
     /// What was assumed about steady flow.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub assumed: Option<String>,
     /// Whether the forces were measured in steady flow on a deck at rest.
+    #[serde(skip)]
     pub measured: bool,
 }
 
-impl DivergenceReading {
+impl Divergence {
     /// Divergence without assumptions.
     pub fn at(forces: &str, speed_m_s: Option<f64>) -> Self {
         Self {
@@ -248,15 +252,32 @@ pub struct ModesLeftOut {
     pub with_all_m_s: Option<f64>,
 }
 
-/// A stage that failed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Failure {
+/// A stage that failed; what does not need it went on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StageFailure {
     /// Which stage, in words.
     pub stage: String,
     /// Why.
     pub reason: String,
-    /// Whether the answer could be another without the failure.
-    pub bears_on_answer: bool,
+    /// Whether the answer would be the same without the failure.
+    #[serde(skip)]
+    pub beside_answer: bool,
+}
+
+impl StageFailure {
+    /// A stage and why it failed, which may bear on the answer.
+    pub fn new(stage: impl Into<String>, reason: impl ToString) -> Self {
+        Self {
+            stage: stage.into(),
+            reason: reason.to_string(),
+            beside_answer: false,
+        }
+    }
+
+    /// The failure in words.
+    pub fn explain(&self) -> String {
+        format!("FAILED {}: {}", self.stage, self.reason)
+    }
 }
 
 /// Rotation in the mean wind, and at the tests.

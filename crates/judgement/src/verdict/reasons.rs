@@ -3,8 +3,7 @@
 use super::critical_speed::Phenomenon;
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{
-    DivergenceReading, Evidence, FlutterReading, ForceBasis, ModesLeftOut, UntestedPart,
-    UntestedParts,
+    Divergence, Evidence, FlutterReading, ForceBasis, ModesLeftOut, UntestedPart, UntestedParts,
 };
 use super::words::{speed, speed_or_none};
 use crate::error::counted;
@@ -94,11 +93,11 @@ pub(super) fn contradiction(first: &FlutterReading, second: &FlutterReading) -> 
 /// Static divergence that another reading has much later or not at all: forces of steady flow, which no test of a moving deck has, are
 /// then what the form of a model makes of them. Coefficients that were measured at rest are believed. First comes the reading that makes
 /// it up, then the one that has it much later, or measured it.
-pub(super) fn doubted_divergence(evidence: &Evidence) -> Option<[&DivergenceReading; 2]> {
-    let at = |d: &DivergenceReading| d.speed_m_s.unwrap_or(f64::INFINITY);
+pub(super) fn doubted_divergence(evidence: &Evidence) -> Option<[&Divergence; 2]> {
+    let at = |d: &Divergence| d.speed_m_s.unwrap_or(f64::INFINITY);
     let readings = || evidence.divergence.iter();
     let first = readings().min_by(|a, b| at(a).total_cmp(&at(b)))?;
-    let least = |d: &DivergenceReading| d.lower_m_s.unwrap_or(at(d)).min(at(d));
+    let least = |d: &Divergence| d.lower_m_s.unwrap_or(at(d)).min(at(d));
     let second = readings().find(|d| least(d) > APART * at(first))?;
     Some(match first.measured {
         true => [second, first],
@@ -107,7 +106,7 @@ pub(super) fn doubted_divergence(evidence: &Evidence) -> Option<[&DivergenceRead
 }
 
 /// The doubt of such readings, where a speed is asked for above the lower of the two.
-pub(super) fn of_divergence(readings: [&DivergenceReading; 2], asked_m_s: f64) -> Option<Doubt> {
+pub(super) fn of_divergence(readings: [&Divergence; 2], asked_m_s: f64) -> Option<Doubt> {
     let [doubted, other] = readings;
     let speeds = readings.into_iter().filter_map(|d| d.speed_m_s);
     speeds

@@ -1,6 +1,6 @@
 //! Evidence of one section in the forces of one model, from the searches alone.
 
-use super::evidence::{DivergenceReading, Evidence, Failure, FlutterReading, ForceBasis, Reach};
+use super::evidence::{Divergence, Evidence, FlutterReading, ForceBasis, Reach, StageFailure};
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
@@ -65,10 +65,10 @@ impl Evidence {
             Ok((speed, AssumedAtRest::below(range.min)?))
         });
         if let Some((speed_m_s, assumed)) = evidence.noted("divergence", divergence) {
-            evidence.divergence.push(DivergenceReading {
+            evidence.divergence.push(Divergence {
                 lower_m_s: speed_m_s.map(|v| assumed.lower_m_s(v)),
                 assumed: Some(assumed.explain()),
-                ..DivergenceReading::at(forces, speed_m_s)
+                ..Divergence::at(forces, speed_m_s)
             });
         }
         evidence
@@ -97,7 +97,7 @@ impl Evidence {
 
     /// With static divergence by these forces, or why it is not known.
     fn with_divergence(mut self, forces: &str, found: Result<Option<f64>>) -> Self {
-        let reading = |speed_m_s| DivergenceReading::at(forces, speed_m_s);
+        let reading = |speed_m_s| Divergence::at(forces, speed_m_s);
         let known = self.noted("divergence", found);
         self.divergence.extend(known.map(reading));
         self
@@ -105,13 +105,7 @@ impl Evidence {
 
     /// The value of a stage; a failure is one of the evidence.
     fn noted<T>(&mut self, stage: &str, result: Result<T>) -> Option<T> {
-        let failed = |e: &Error| {
-            self.failures.push(Failure {
-                stage: stage.to_owned(),
-                reason: e.to_string(),
-                bears_on_answer: true,
-            });
-        };
+        let failed = |e: &Error| self.failures.push(StageFailure::new(stage, e));
         result.inspect_err(failed).ok()
     }
 }

@@ -97,6 +97,7 @@ fn scanned(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
         }),
         flutter,
         growth: Some(UnwantedGrowth {
+            model: String::new(),
             scanned_to_m_s: 100.0,
             proved: true,
             bands: Vec::new(),
@@ -157,7 +158,7 @@ fn which_number_lies_below_is_said() {
 fn divergence_below_the_required_speed_is_not_met() {
     let mut evidence = scanned(100.0, vec![stable("the model", 110.0)]);
     assert_eq!(words(&evidence), "MET");
-    evidence.divergence = vec![DivergenceReading::at("the model", Some(79.9))];
+    evidence.divergence = vec![Divergence::at("the model", Some(79.9))];
     let verdict = Verdict::judge(&evidence);
     let below = Below::BestEstimate;
     assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
@@ -171,14 +172,14 @@ fn divergence_below_the_required_speed_is_not_met() {
 #[test]
 fn divergence_that_is_expected_before_flutter_is_in_the_headline() {
     let mut evidence = scanned(21.0, vec![found("the model", 36.1, 7.0)]);
-    evidence.divergence = vec![DivergenceReading::at("the model", Some(30.5))];
+    evidence.divergence = vec![Divergence::at("the model", Some(30.5))];
     let headline = Verdict::judge(&evidence).headline;
     let says = "; static divergence at 30.5 m/s (the model) comes before it";
     assert!(
         headline.contains("flutter onset 36.1 m/s") && headline.ends_with(says),
         "{headline}"
     );
-    evidence.divergence = vec![DivergenceReading::at("the model", Some(36.2))];
+    evidence.divergence = vec![Divergence::at("the model", Some(36.2))];
     assert!(!Verdict::judge(&evidence).headline.contains("divergence"));
 }
 
@@ -187,7 +188,7 @@ fn divergence_that_is_expected_before_flutter_is_in_the_headline() {
 fn what_begins_first_governs_also_without_a_requirement() {
     let mut evidence = scanned(1.0, vec![stable("the models", 120.0)]);
     evidence.required = None;
-    evidence.divergence = vec![DivergenceReading::at("the models", Some(62.6))];
+    evidence.divergence = vec![Divergence::at("the models", Some(62.6))];
     let verdict = Verdict::judge(&evidence);
     assert!(
         verdict
@@ -201,7 +202,7 @@ fn what_begins_first_governs_also_without_a_requirement() {
             .contains("up to 62.6 m/s it would be met")
     );
     evidence.flutter = vec![found("the model", 21.2, 0.4)];
-    evidence.divergence = vec![DivergenceReading::at("the table", Some(14.8))];
+    evidence.divergence = vec![Divergence::at("the table", Some(14.8))];
     let critical = Verdict::judge(&evidence).critical;
     let governs = critical.governs.unwrap();
     assert_eq!(governs.phenomenon, Phenomenon::Divergence);
@@ -233,7 +234,7 @@ fn a_search_answers_for_half_of_its_range() {
     assert_eq!(of_search(None, stable(model, 40.0)), Some(40.0));
     assert_eq!(of_search(Some(40.0), found(model, 38.0, 1.0)), Some(37.0));
     let mut far = scanned(1.0, vec![stable(model, 24.0)]);
-    far.divergence = vec![DivergenceReading::at(model, Some(66.9))];
+    far.divergence = vec![Divergence::at(model, Some(66.9))];
     for (searched_to_m_s, first) in [(24.0, "no flutter up to 24"), (80.0, "static divergence")] {
         far.searched_to_m_s = Some(searched_to_m_s);
         far.required = None;
@@ -390,7 +391,7 @@ fn readings_that_agree_share_an_interval() {
 #[test]
 fn a_verdict_is_written_and_read() {
     let mut evidence = scanned(62.0, vec![stable("the model", 54.0)]);
-    evidence.divergence = vec![DivergenceReading::at("the model", Some(79.9))];
+    evidence.divergence = vec![Divergence::at("the model", Some(79.9))];
     let verdict = Verdict::judge(&evidence);
     let json = serde_json::to_value(&verdict).unwrap();
     assert_eq!(json["outcome"]["state"], "cannot_be_judged");

@@ -17,7 +17,7 @@ mod torture;
 use super::types::*;
 use super::*;
 use crate::location::location_of;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::trained_model::{Model, TrainedModel};
 use std::ffi::{CStr, CString, c_void};
 use std::path::Path;
@@ -73,7 +73,7 @@ impl Extracted {
         std::fs::write(folder.path().join("model.json"), json).unwrap();
         Self {
             folder,
-            resources: Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap(),
+            resources: Resources::from_bytes(json.as_bytes(), [None; 3]).unwrap(),
         }
     }
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2String};
 use crate::force_options::{FORCE_FILE, ForceOptions};
 use crate::groups::Groups;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Mutex;
@@ -57,10 +57,7 @@ impl NewStandardUnit {
             std::fs::write(folder.path().join(FORCE_FILE), &text).unwrap();
             text
         });
-        let options = OptionFiles {
-            force: force.as_deref().map(str::as_bytes),
-            ..OptionFiles::default()
-        };
+        let options = [force.as_deref().map(str::as_bytes), None, None];
         let resources = Resources::from_bytes(&model, options).unwrap();
         let mut unit = Self {
             groups: Groups::new(&resources.table),
@@ -180,7 +177,7 @@ fn the_trajectory_is_that_of_the_instance_bit_for_bit() {
         let (outputs, wind) = (["heave", "rotation", "lift", "moment"], read("wind_speed"));
         let indices = outputs.map(read);
         let json = std::fs::read(unit.folder.path().join("model.json")).unwrap();
-        let resources = Resources::from_bytes(&json, OptionFiles::default()).unwrap();
+        let resources = Resources::from_bytes(&json, [None; 3]).unwrap();
         let mut own = crate::instance::Instance::new(resources).unwrap();
         own.set_up_experiment(0.0, None).unwrap();
         own.enter_initialization();

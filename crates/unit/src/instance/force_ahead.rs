@@ -4,8 +4,9 @@ use super::force_parts::StripsUnderModel;
 use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET_AS_DERIVATIVE};
 use super::memory::Memory;
 use crate::error::{Error, Result};
-use crate::prescribed::{ForceAhead, KnownMotion, PrescribedForces, StripFlow};
+use crate::prescribed::{KnownMotion, PrescribedForces, StripFlow};
 use crate::response::SectionState;
+use crate::variables::Dual;
 use std::ops::Range;
 
 impl ForceUnit {
@@ -121,11 +122,11 @@ impl ForceUnit {
         ahead_s: f64,
         memory: &Memory,
         flows: &[StripFlow],
-        forces: &mut Vec<ForceAhead>,
+        forces: &mut Vec<Dual>,
     ) -> Result<()> {
         let density = self.air_density(&memory.values);
         forces.clear();
-        forces.resize(self.coordinates(), ForceAhead::default());
+        forces.resize(self.coordinates(), Dual::default());
         for part in &mut self.parts {
             let flows = &flows[part.strips.clone()];
             let found = &mut forces[part.coordinates.clone()];
@@ -147,12 +148,12 @@ impl ForceUnit {
     }
 
     /// Refuses forces, of a strip per length or in all, that no number holds any more.
-    pub(super) fn check_forces(&self, memory: &Memory, found: &[ForceAhead]) -> Result<()> {
+    pub(super) fn check_forces(&self, memory: &Memory, found: &[Dual]) -> Result<()> {
         let holds = |(part, s): (&StripsUnderModel, usize)| {
             // of zero length an infinite force is no number, and refused as well
             let length = memory.values[self.strips[s][1]];
             let own = found[part.coordinates_of(s)].iter();
-            own.into_iter().all(|f| (f.force * length).is_finite())
+            own.into_iter().all(|f| (f.value * length).is_finite())
         };
         match self.parts_and_strips().all(holds) {
             true => Ok(()),

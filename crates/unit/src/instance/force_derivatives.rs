@@ -157,7 +157,7 @@ impl ForceUnit {
             self.rates_now(memory, &mut rates);
         }
         let value = |role: &Role| match role {
-            Role::Force(..) | Role::TotalForce(..) => self.entry(memory, *role).force,
+            Role::Force(..) | Role::TotalForce(..) => self.entry(memory, *role).value,
             Role::FilterRate(i) => rates.get(*i).copied().unwrap_or(0.0),
             other => {
                 let entry = self.entry_of(*other);

@@ -8,10 +8,9 @@ use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET};
 use super::memory::{Memory, Now};
 use crate::error::{Result, ensure};
 use crate::lifecycle::State;
-use crate::prescribed::ForceAhead;
 use crate::refusal::{CallResult, Refusal};
 use crate::section::Dof;
-use crate::variables::Role;
+use crate::variables::{Dual, Role};
 use std::ops::Range;
 
 /// A displacement that has changed between events.
@@ -71,8 +70,7 @@ impl ForceUnit {
         let density = self.air_density(&memory.values);
         let wind = memory.values[self.inputs[0]];
         work.forces.clear();
-        work.forces
-            .resize(self.coordinates(), ForceAhead::default());
+        work.forces.resize(self.coordinates(), Dual::default());
         for (part, s) in self.parts_and_strips() {
             let air = self.flow(&memory.values, s).in_air(wind, density);
             let filters = &memory.system.values[part.filters_of(s)];

@@ -17,8 +17,8 @@ impl ForceUnit {
             for (strip, (indices, found)) in self.strips[part.strips.clone()].iter().zip(found) {
                 let length = memory.values[strip[1]];
                 for ([per_length, total], force) in indices.iter().zip(found) {
-                    memory.values[*per_length] = force.force;
-                    memory.values[*total] = force.force * length;
+                    memory.values[*per_length] = force.value;
+                    memory.values[*total] = force.value * length;
                 }
             }
         }
@@ -41,7 +41,7 @@ impl ForceUnit {
         let motion = |response, dof| match (response, coordinate(&self.parts, s, dof)) {
             _ if !dofs.contains(&dof) => Dual::default(),
             (Response::SelfExcitedForce, i) => {
-                Dual::new(self.work.forces[i].force, slope(Role::Force(s, dof)))
+                Dual::new(self.work.forces[i].value, slope(Role::Force(s, dof)))
             }
             (response, i) => {
                 let index = self.inputs[1 + 3 * i + response as usize];
@@ -80,7 +80,7 @@ impl ForceUnit {
             Role::Motion(s, response, dof) => {
                 of_input(1 + 3 * coordinate(&self.parts, s, dof) + response as usize)
             }
-            force => self.entry(memory, force).rate,
+            force => self.entry(memory, force).slope,
         }
     }
 }

@@ -11,12 +11,12 @@ use super::unit::{Prepared, Unit};
 use crate::error::Result;
 use crate::force_options::StripsOfModel;
 use crate::lifecycle::State;
-use crate::prescribed::{ForceAhead, KnownMotion, StripFlow};
+use crate::prescribed::{KnownMotion, StripFlow};
 use crate::refusal::CallResult;
 use crate::resources::Resources;
 use crate::response::SectionState;
 use crate::variables::{
-    ComputedNumber, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState, VariableTable,
+    ComputedNumber, Dual, LINEAR_ROTATION_RAD, Role, SectionParameter, StripState, VariableTable,
     strip_states,
 };
 
@@ -68,10 +68,10 @@ pub(super) struct ForceUnit {
 pub(super) struct ForceWork {
     pub motion: Vec<KnownMotion>,
     pub flows: Vec<StripFlow>,
-    /// Forces of all strips in the order of the motion.
-    pub forces: Vec<ForceAhead>,
+    /// Forces of all strips, per length, in the order of the motion, with their rates in steady wind.
+    pub forces: Vec<Dual>,
     /// As they would be without motion of the present.
-    pub predicted: Vec<ForceAhead>,
+    pub predicted: Vec<Dual>,
     /// State of the forces with the motion of the present, and the gusts.
     pub renewed: SectionState,
     /// Gusts of a strip.
@@ -204,17 +204,14 @@ impl ForceUnit {
     }
 
     /// A force that was found last, with its rate; zero for what is none.
-    pub(super) fn entry(&self, memory: &Memory, role: Role) -> ForceAhead {
+    pub(super) fn entry(&self, memory: &Memory, role: Role) -> Dual {
         let (s, dof, factor) = match role {
             Role::Force(s, dof) => (s, dof, 1.0),
             Role::TotalForce(s, dof) => (s, dof, memory.values[self.strips[s][1]]),
-            _ => return ForceAhead::default(),
+            _ => return Dual::default(),
         };
         let found = self.work.forces[coordinate(&self.parts, s, dof)];
-        ForceAhead {
-            force: factor * found.force,
-            rate: factor * found.rate,
-        }
+        Dual::new(factor * found.value, factor * found.slope)
     }
 }
 

@@ -13,12 +13,12 @@ mod unknown;
 
 use super::Instance;
 use crate::aerodynamics::{GustForce, RationalAdmittance};
-use crate::bridge::{Bridge, DampedPoint, Dampers, MassDamper, ViscousLink};
+use crate::bridge::{Bridge, DampedPoint, Dampers, MassDamper, StripGroup, ViscousLink};
 use crate::bridge_gusts::{BridgeGusts, TurbulenceOptions};
-use crate::bridge_options::{BridgeOptions, GroupOptions};
+use crate::bridge_options::BridgeOptions;
 use crate::force_options::ForceOptions;
 use crate::lifecycle::State;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use std::sync::Arc;
@@ -65,7 +65,7 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
         modes: bridge.modes,
         dampers: Dampers::default(),
         structure_alone: false,
-        groups: vec![GroupOptions {
+        groups: vec![StripGroup {
             name: "girder".into(),
             width_m: model.section.width_m,
             wind_factor: 1.0,
@@ -127,11 +127,11 @@ fn resources_in(kind: Exported, gusts: bool) -> Resources {
     let force = gust_force();
     let gust_text = gusts.then(|| serde_json::to_string(&force).unwrap());
     let of_files = |name, force: Option<&str>| {
-        let files = OptionFiles {
-            force: force.map(str::as_bytes),
-            gusts: gust_text.as_deref().map(str::as_bytes),
-            ..OptionFiles::default()
-        };
+        let files = [
+            force.map(str::as_bytes),
+            gust_text.as_deref().map(str::as_bytes),
+            None,
+        ];
         Resources::from_bytes(&fixture(name), files).unwrap()
     };
     match kind {

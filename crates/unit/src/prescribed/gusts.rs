@@ -1,8 +1,9 @@
 //! Gusts on strips whose motion is prescribed: their lags go on exactly from one point of time to the next.
 
-use super::{Airflow, ForceAhead};
+use super::Airflow;
 use crate::aerodynamics::GustForce;
 use crate::section::Dof;
+use crate::variables::Dual;
 
 /// Gust forces on strips. The state of a strip is the gust at the newest point of time (`u`, `w`, m/s), then the gusts behind
 /// each lag of `u` and of `w`.
@@ -52,7 +53,7 @@ impl StripGusts {
         rate: [f64; 2],
         ahead_s: f64,
         air: Airflow,
-        forces: &mut [ForceAhead],
+        forces: &mut [Dual],
     ) {
         let convection_per_s = air.wind_m_s / air.width_m;
         let gust = [0, 1].map(|j| strip[j] + ahead_s * rate[j]);
@@ -68,8 +69,8 @@ impl StripGusts {
         }
         for ((force, dof), row) in forces.iter_mut().zip(&self.dofs).zip(&self.coefficients) {
             let scale = 0.5 * air.density_kg_m3 * air.wind_m_s * dof.force_scale(air.width_m);
-            force.force += scale * (row[0] * passed[0] + row[1] * passed[1]);
-            force.rate += scale * (row[0] * passed_rate[0] + row[1] * passed_rate[1]);
+            force.value += scale * (row[0] * passed[0] + row[1] * passed[1]);
+            force.slope += scale * (row[0] * passed_rate[0] + row[1] * passed_rate[1]);
         }
     }
 
@@ -138,11 +139,11 @@ mod tests {
             let mut strip = vec![0.0; gusts.per_strip()];
             gusts.take(&mut strip, [2.0, -1.0], None);
             gusts.take(&mut strip, [2.0, -1.0], Some(0.7));
-            let mut forces = [ForceAhead::default(); 2];
+            let mut forces = [Dual::default(); 2];
             gusts.add_ahead(&strip, [0.0; 2], 0.3, AIR, &mut forces);
             let lift = 0.5 * 1.25 * 30.0 * 20.0 * (0.2 * 2.0 - 5.0);
-            assert!((forces[0].force - lift).abs() < 1e-12 * lift.abs());
-            assert!(forces[0].rate.abs() < 1e-9);
+            assert!((forces[0].value - lift).abs() < 1e-12 * lift.abs());
+            assert!(forces[0].slope.abs() < 1e-9);
         }
     }
 
@@ -160,15 +161,15 @@ mod tests {
         gusts.take(&mut strip, [0.5, 0.0], None);
         gusts.take(&mut strip, [2.0, -1.0], Some(0.7));
         let at = |ahead| {
-            let mut forces = [ForceAhead::default(); 2];
+            let mut forces = [Dual::default(); 2];
             gusts.add_ahead(&strip, [0.3, -0.2], ahead, AIR, &mut forces);
             forces
         };
         let step = 1e-4;
         let (before, now, after) = (at(0.2 - step), at(0.2), at(0.2 + step));
         for i in 0..2 {
-            let expected = (after[i].force - before[i].force) / (2.0 * step);
-            assert!((now[i].rate - expected).abs() < 1e-6 * expected.abs());
+            let expected = (after[i].value - before[i].value) / (2.0 * step);
+            assert!((now[i].slope - expected).abs() < 1e-6 * expected.abs());
         }
     }
 }

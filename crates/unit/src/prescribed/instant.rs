@@ -2,10 +2,11 @@
 
 use super::course::MotionCubic;
 use super::filters::add_product;
-use super::{Airflow, ForceAhead, PrescribedForces};
+use super::{Airflow, PrescribedForces};
 use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
 use crate::section::Dof;
+use crate::variables::Dual;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -56,13 +57,13 @@ impl PrescribedForces {
         filters.copy_from_slice(filters_at_rest.as_slice());
     }
 
-    /// Forces on a strip now, from its filters and the displacement, rate and acceleration of each coordinate.
+    /// Forces on a strip now, with their rates, from its filters and the displacement, rate and acceleration of each coordinate.
     pub fn at_instant(
         &self,
         filters: &[f64],
         motion: &[[f64; 3]],
         air: Airflow,
-        forces: &mut [ForceAhead],
+        forces: &mut [Dual],
     ) {
         let mut courses = [MotionCubic::default(); Dof::THREE.len()];
         for ((course, dof), now) in courses.iter_mut().zip(&self.dofs).zip(motion) {

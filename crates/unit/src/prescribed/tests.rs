@@ -30,8 +30,8 @@ fn take(
     forces.take(state, t, wind, &motion, &[FLOW]).unwrap();
 }
 
-fn ahead(forces: &mut PrescribedForces, state: &[f64], ahead_s: f64) -> [ForceAhead; 2] {
-    let mut found = [ForceAhead::default(); 2];
+fn ahead(forces: &mut PrescribedForces, state: &[f64], ahead_s: f64) -> [Dual; 2] {
+    let mut found = [Dual::default(); 2];
     forces
         .ahead(state, &[FLOW], ahead_s, DENSITY, &mut found)
         .unwrap();
@@ -74,7 +74,7 @@ fn harmonic_motion_gives_the_transfer_matrix() {
                     let instant = t + ahead_steps * h;
                     let size = (0..40).map(|m| expected(row, m as f64 / frequency / 40.0).abs());
                     let size = size.fold(0.0, f64::max);
-                    worst = worst.max((force.force - expected(row, instant)).abs() / size);
+                    worst = worst.max((force.value - expected(row, instant)).abs() / size);
                 }
             }
         }
@@ -120,8 +120,8 @@ fn a_cubic_motion_needs_no_small_steps() {
     };
     let (few, many) = (run(2), run(400));
     for (a, b) in few.iter().zip(&many) {
-        assert!((a.force / b.force - 1.0).abs() < 1e-9, "{a:?} {b:?}");
-        assert!((a.rate / b.rate - 1.0).abs() < 1e-8, "{a:?} {b:?}");
+        assert!((a.value / b.value - 1.0).abs() < 1e-9, "{a:?} {b:?}");
+        assert!((a.slope / b.slope - 1.0).abs() < 1e-8, "{a:?} {b:?}");
     }
 }
 
@@ -138,8 +138,8 @@ fn the_rate_is_that_of_the_force() {
     let h = 1e-4;
     let [low, middle, high] = [-h, 0.0, h].map(|d| ahead(&mut forces, &state, 0.15 + d));
     for i in 0..2 {
-        let difference = (high[i].force - low[i].force) / (2.0 * h);
-        assert!((middle[i].rate / difference - 1.0).abs() < 1e-6);
+        let difference = (high[i].value - low[i].value) / (2.0 * h);
+        assert!((middle[i].slope / difference - 1.0).abs() < 1e-6);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Facts of the table that importers rely on.
 
 use super::*;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::section::Translation;
 
 fn fixture(kind: &str) -> TrainedModel {
@@ -19,7 +19,7 @@ fn described(kind: &str) -> VariableTable {
 
 fn described_model(model: &TrainedModel) -> VariableTable {
     let json = model.to_json().unwrap();
-    let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default());
+    let resources = Resources::from_bytes(json.as_bytes(), [None; 3]);
     resources.unwrap().described_table().unwrap()
 }
 

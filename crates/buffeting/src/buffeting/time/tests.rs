@@ -167,7 +167,7 @@ fn gusts_have_the_stated_variance() {
     let variances: Vec<[f64; 2]> = (0..200)
         .map(|seed| {
             let field = turbulence_field(&problem, 40.0, 0.1, 6000, seed).unwrap();
-            field.gusts.map(|rows| variance(&rows[0]))
+            field.map(|rows| variance(&rows[0]))
         })
         .collect();
     let whole = [16.0, (0.06 * 40.0f64).powi(2)];

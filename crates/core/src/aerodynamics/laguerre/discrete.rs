@@ -39,63 +39,49 @@ pub struct DiscreteLaguerre {
     pub static_term: Vec<f64>,
 }
 
-/// The recursion (2.33) of a chain of filters, `x_0[k] = √α x_0[k−1] + √(1−α) v[k]` and
-/// `x_l[k] = √α x_l[k−1] + √α x_{l−1}[k] − x_{l−1}[k−1]`.
-#[derive(Debug, Clone, Copy)]
-pub struct Recursion {
-    root: f64,
-    gain: f64,
-}
-
-impl Recursion {
-    /// With the decay factor `α`.
-    pub fn new(alpha: f64) -> Self {
-        Self {
-            root: alpha.sqrt(),
-            gain: (1.0 - alpha).sqrt(),
-        }
+/// The recursion (2.33) of a chain of filters with the decay factor `α`, `x_0[k] = √α x_0[k−1] + √(1−α) v[k]` and
+/// `x_l[k] = √α x_l[k−1] + √α x_{l−1}[k] − x_{l−1}[k−1]`: carries the filter states on over the samples of a motion and writes every
+/// filter's output to a stretch of `stride` numbers. One filter after the other, each over all samples: the recursions only look back.
+pub fn advance_filters(
+    alpha: f64,
+    state: &mut [f64],
+    motion: &[f64],
+    out: &mut [f64],
+    stride: usize,
+) {
+    let (root, gain) = (alpha.sqrt(), (1.0 - alpha).sqrt());
+    let rows = motion.len();
+    let Some(mut last) = state.first().copied() else {
+        return;
+    };
+    for (x, v) in out[..rows].iter_mut().zip(motion) {
+        last = root * last + gain * v;
+        *x = last;
     }
-
-    /// Carries the filter states on over the samples of a motion and writes every filter's output to a stretch of `stride`
-    /// numbers. One filter after the other, each over all samples: the recursions only look back.
-    pub fn advance(self, state: &mut [f64], motion: &[f64], out: &mut [f64], stride: usize) {
-        let rows = motion.len();
-        let Some(mut last) = state.first().copied() else {
-            return;
-        };
-        for (x, v) in out[..rows].iter_mut().zip(motion) {
-            last = self.root * last + self.gain * v;
+    let mut before = std::mem::replace(&mut state[0], last);
+    for l in 1..state.len() {
+        let (head, tail) = out.split_at_mut(l * stride);
+        let below = &head[(l - 1) * stride..][..rows];
+        let (mut last, mut previous) = (state[l], before);
+        for (x, b) in tail[..rows].iter_mut().zip(below) {
+            last = root * (last + b) - previous;
+            previous = *b;
             *x = last;
         }
-        let mut before = std::mem::replace(&mut state[0], last);
-        for l in 1..state.len() {
-            let (head, tail) = out.split_at_mut(l * stride);
-            let below = &head[(l - 1) * stride..][..rows];
-            let (mut last, mut previous) = (state[l], before);
-            for (x, b) in tail[..rows].iter_mut().zip(below) {
-                last = self.root * (last + b) - previous;
-                previous = *b;
-                *x = last;
-            }
-            before = std::mem::replace(&mut state[l], last);
-        }
-    }
-
-    /// The states one sample later.
-    fn next(self, mut state: Vec<f64>, sample: f64) -> DVector<f64> {
-        let mut out = vec![0.0; state.len()];
-        self.advance(&mut state, &[sample], &mut out, 1);
-        DVector::from_vec(state)
+        before = std::mem::replace(&mut state[l], last);
     }
 }
 
 /// `A_L` (L×L) and `B_L` (L) of equation (4.2): `S(k+1) = A_L S(k) + B_L v(k+1)`.
 pub fn discrete_filter_matrices(alpha: f64, count: usize) -> (DMatrix<f64>, DVector<f64>) {
-    let recursion = Recursion::new(alpha);
+    let next = |mut state: Vec<f64>, sample: f64| {
+        advance_filters(alpha, &mut state, &[sample], &mut vec![0.0; count], 1);
+        state
+    };
     let unit = |l: usize| (0..count).map(|j| f64::from(u8::from(j == l))).collect();
-    let columns: Vec<_> = (0..count).map(|l| recursion.next(unit(l), 0.0)).collect();
-    let a = DMatrix::from_fn(count, count, |i, j| columns[j][i]);
-    (a, recursion.next(vec![0.0; count], 1.0))
+    let columns = (0..count).flat_map(|l| next(unit(l), 0.0));
+    let a = DMatrix::from_iterator(count, count, columns);
+    (a, DVector::from_vec(next(vec![0.0; count], 1.0)))
 }
 
 /// Impulse responses `g_0[k] … g_{L−1}[k]` for `k = 0 … samples−1`, as an L×samples matrix.

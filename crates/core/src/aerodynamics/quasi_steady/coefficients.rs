@@ -1,5 +1,6 @@
 //! Static coefficients of a deck over the angle of attack, smooth between the tested angles.
 
+use crate::aerodynamics::derivatives::TableHeader;
 use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
 use crate::error::{Error, Place, Result, ensure};
 use crate::section::Dof;
@@ -21,17 +22,6 @@ pub struct CoefficientRow {
     pub lift: f64,
     /// `C_M`.
     pub moment: f64,
-}
-
-/// Where a table comes from. Units and signs are `TABLE_UNITS` and `TABLE_SIGN_CONVENTION` for all tables.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CoefficientsHeader {
-    /// Where the figures come from.
-    pub source: String,
-    /// Licence notice of the figures.
-    pub licence: String,
-    /// What wrote the table.
-    pub generator: String,
 }
 
 /// Coefficients and their slopes at one angle of attack.
@@ -68,7 +58,7 @@ pub struct StaticCoefficients {
     /// Name of the deck.
     pub name: String,
     /// Where the figures come from.
-    pub header: CoefficientsHeader,
+    pub header: TableHeader,
     rows: Vec<CoefficientRow>,
     drag: Spline,
     lift: Spline,
@@ -79,7 +69,7 @@ impl StaticCoefficients {
     /// A table after checking it: at least four rows, finite numbers, angles that rise strictly and lie within ±180°.
     pub fn new(
         name: impl Into<String>,
-        header: CoefficientsHeader,
+        header: TableHeader,
         rows: Vec<CoefficientRow>,
     ) -> Result<Self> {
         check_rows(&rows, |i| format!("row {}", i + 1))?;
@@ -183,7 +173,7 @@ mod tests {
                 moment: 1.5 * angle_deg.to_radians(),
             })
             .to_vec();
-        let table = StaticCoefficients::new("line", CoefficientsHeader::default(), rows).unwrap();
+        let table = StaticCoefficients::new("line", TableHeader::default(), rows).unwrap();
         let at = table.at(3f64.to_radians()).unwrap();
         assert!((at.lift_slope - 6.0).abs() < 1e-13 && (at.moment_slope - 1.5).abs() < 1e-13);
         assert!((at.drag - 0.05).abs() < 1e-15 && at.drag_slope.abs() < 1e-13);

@@ -1,9 +1,8 @@
 //! Equilibria against closed forms: the plate at an angle, its divergence, a fold, the end of a table.
 
 use super::*;
-use crate::aerodynamics::quasi_steady::{
-    Arms, CoefficientRow, CoefficientsHeader, StaticCoefficients,
-};
+use crate::aerodynamics::derivatives::TableHeader;
+use crate::aerodynamics::quasi_steady::{Arms, CoefficientRow, StaticCoefficients};
 use crate::section::SectionModel;
 use std::f64::consts::PI;
 
@@ -19,7 +18,7 @@ fn table(moment: impl Fn(f64) -> f64) -> StaticCoefficients {
             }
         })
         .collect();
-    StaticCoefficients::new("made up", CoefficientsHeader::default(), rows).unwrap()
+    StaticCoefficients::new("made up", TableHeader::default(), rows).unwrap()
 }
 
 fn path(moment: impl Fn(f64) -> f64, speeds: &[f64]) -> (EquilibriumPath, Structure) {

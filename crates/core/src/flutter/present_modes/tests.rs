@@ -32,7 +32,7 @@ fn section(modes: usize) -> CoupledSection {
             shape,
         }
     };
-    let group = StripGroup {
+    let group: StripGroup = StripGroup {
         name: "girder".into(),
         width_m: 31.0,
         wind_factor: 1.0,

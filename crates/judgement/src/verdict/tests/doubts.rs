@@ -195,16 +195,15 @@ fn constraints_that_moved_the_onset_are_weighed() {
 #[test]
 fn failures_input_and_rotation_are_weighed() {
     let clean = scanned(30.0, vec![found("the model", 36.9, 0.3)]);
-    let failed = |bears_on_answer| Evidence {
-        failures: vec![Failure {
-            stage: "divergence".to_owned(),
-            reason: "no stiffness".to_owned(),
-            bears_on_answer,
+    let failed = |beside_answer| Evidence {
+        failures: vec![StageFailure {
+            beside_answer,
+            ..StageFailure::new("divergence", "no stiffness")
         }],
         ..clean.clone()
     };
-    assert_eq!(words(&failed(true)), "CANNOT BE JUDGED");
-    assert_eq!(words(&failed(false)), "MET");
+    assert_eq!(words(&failed(false)), "CANNOT BE JUDGED");
+    assert_eq!(words(&failed(true)), "MET");
     let implausible = Evidence {
         implausible: vec![Finding::unit(
             "section.width_m",
@@ -374,16 +373,13 @@ fn an_onset_above_the_tests_meets_nothing() {
 #[test]
 fn divergence_that_another_reading_contradicts_is_a_doubt() {
     let mut evidence = scanned(40.0, vec![stable("the model", 110.0)]);
-    let table = |speed| DivergenceReading::at("the table", speed);
+    let table = |speed| Divergence::at("the table", speed);
     let said = |evidence: &Evidence| {
         let doubts = Verdict::judge(evidence).doubts;
         let against = |d: &&Doubt| matches!(d.kind, DoubtKind::Contradiction { .. });
         doubts.iter().find(against).map(|d| d.text.clone())
     };
-    evidence.divergence = vec![
-        DivergenceReading::at("the model", Some(9.24)),
-        table(Some(61.8)),
-    ];
+    evidence.divergence = vec![Divergence::at("the model", Some(9.24)), table(Some(61.8))];
     assert_eq!(
         said(&evidence).unwrap(),
         "Contradiction: static divergence at 9.24 m/s by the model, 61.8 m/s by the table"
@@ -408,9 +404,6 @@ fn divergence_that_another_reading_contradicts_is_a_doubt() {
     evidence.divergence[1] = table(Some(11.0));
     assert_eq!(said(&evidence), None);
     // not where nobody asks
-    evidence.divergence = vec![
-        DivergenceReading::at("the model", Some(60.0)),
-        table(Some(90.0)),
-    ];
+    evidence.divergence = vec![Divergence::at("the model", Some(60.0)), table(Some(90.0))];
     assert_eq!(said(&evidence), None);
 }

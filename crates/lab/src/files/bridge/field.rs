@@ -52,9 +52,14 @@ impl FieldTable {
         }))
     }
 
+    /// Samples at each place.
+    pub fn samples(&self) -> usize {
+        self.gusts[0].first().map_or(0, Vec::len)
+    }
+
     /// Length, s.
     pub fn duration_s(&self) -> f64 {
-        self.step_s * self.gusts[0][0].len() as f64
+        self.step_s * self.samples() as f64
     }
 
     /// Standard deviations of `u` and `w`, m/s, from the mean of each place.

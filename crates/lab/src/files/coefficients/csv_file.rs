@@ -14,8 +14,9 @@
 //!
 //! Angles rise from row to row. Numbers are written with as many digits as it takes to read the same double back.
 
+use crate::aerodynamics::derivatives::TableHeader;
 use crate::aerodynamics::quasi_steady::coefficients::check_rows;
-use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsHeader, StaticCoefficients};
+use crate::aerodynamics::quasi_steady::{CoefficientRow, StaticCoefficients};
 use crate::error::{Place, Result};
 use crate::files::header_csv::{CommentHeader, number_rows};
 use std::io::Write;
@@ -66,10 +67,11 @@ pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
     })?;
     header.must_say("sign_convention", SIGN_CONVENTION)?;
     header.must_say("units", UNITS)?;
-    let provenance = CoefficientsHeader {
+    let provenance = TableHeader {
         source: header.text("source"),
         licence: header.text("licence"),
         generator: header.text("generator"),
+        ..TableHeader::default()
     };
     StaticCoefficients::new(header.required("name")?.value.clone(), provenance, rows)
 }

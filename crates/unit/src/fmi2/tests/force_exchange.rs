@@ -46,11 +46,7 @@ impl Extracted {
                 std::fs::write(folder.join(name), bytes).unwrap();
             }
         }
-        let options = OptionFiles {
-            force: force.as_deref(),
-            gusts: gusts.as_deref(),
-            bounds: None,
-        };
+        let options = [force.as_deref(), gusts.as_deref(), None];
         Self {
             resources: Resources::from_bytes(&model, options).unwrap(),
             ..self

@@ -3,7 +3,6 @@
 use super::model_exchange::exchanged;
 use super::*;
 use crate::aerodynamics::{GustForce, RationalAdmittance, Transfer};
-use crate::resources::OptionFiles;
 use crate::section::Dof;
 use nalgebra::{Complex, DVector};
 use std::f64::consts::TAU;
@@ -25,10 +24,7 @@ fn in_gusts(kind: &str, admittance: RationalAdmittance) -> Extracted {
     let gusts = serde_json::to_vec(&force(admittance)).unwrap();
     std::fs::write(plain.folder.path().join("gusts.json"), &gusts).unwrap();
     let model = std::fs::read(plain.folder.path().join("model.json")).unwrap();
-    let options = OptionFiles {
-        gusts: Some(&gusts),
-        ..OptionFiles::default()
-    };
+    let options = [None, Some(&gusts[..]), None];
     Extracted {
         resources: Resources::from_bytes(&model, options).unwrap(),
         ..plain

@@ -57,7 +57,7 @@ fn samples_that_are_too_dense_are_refused() {
     };
     m.delta_s = 1e-30;
     let json = model.to_json().unwrap();
-    let refused = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap_err();
+    let refused = Resources::from_bytes(json.as_bytes(), [None; 3]).unwrap_err();
     let words = refused.to_string();
     assert!(
         words.contains("delta_s") && words.contains("0.000001"),

@@ -21,10 +21,7 @@ fn unit_of(kind: &str) -> StartedUnit {
     let json = std::fs::read(archive.folder.path().join("model.json")).unwrap();
     let options = ForceOptions::single(0.45).to_json().unwrap();
     std::fs::write(archive.folder.path().join(FORCE_FILE), &options).unwrap();
-    let files = OptionFiles {
-        force: Some(options.as_bytes()),
-        ..OptionFiles::default()
-    };
+    let files = [Some(options.as_bytes()), None, None];
     archive.resources = Resources::from_bytes(&json, files).unwrap();
     StartedUnit::instantiate(archive)
 }

@@ -5,7 +5,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::instance::Instance;
 use crate::instance::section::OnsetCard;
 use crate::onset_bounds::OnsetBounds;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -29,7 +29,7 @@ fn a_gap_between_tests_is_no_test() {
     ];
     model.tested_range = ReducedFrequencyRange::covering(parts).unwrap();
     let (json, tested) = (model.to_json().unwrap(), model.tested_range);
-    let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+    let resources = Resources::from_bytes(json.as_bytes(), [None; 3]).unwrap();
     let mut unit = Instance::new(resources).unwrap();
     unit.enter_initialization();
     let (section, wind) = (model.section.clone(), index(&unit, "wind_speed"));
@@ -115,10 +115,7 @@ fn each_run_is_told_what_its_onset_is_worth() {
         undetermined: Some("not determined by these data".into()),
     };
     let json = serde_json::to_string(&bounds).unwrap();
-    let files = OptionFiles {
-        bounds: Some(json.as_bytes()),
-        ..OptionFiles::default()
-    };
+    let files = [None, None, Some(json.as_bytes())];
     let mut unit =
         Instance::new(Resources::from_bytes(&fixture("rational"), files).unwrap()).unwrap();
     let told = |unit: &mut Instance, what: &str| {

@@ -4,7 +4,7 @@ use super::{fixture, gust_force, index, start};
 use crate::aerodynamics::{GustForce, Lags, RationalModel};
 use crate::force_options::{ForceOptions, FurtherModel, StripOptions};
 use crate::instance::Instance;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::variables::{Causality, Variable};
@@ -86,11 +86,11 @@ fn options(of: &[(TrainedModel, &[u32])], gusts: bool) -> ForceOptions {
 fn resources_of(of: &[(TrainedModel, &[u32])], gusts: bool) -> Resources {
     let force = options(of, gusts).to_json().unwrap();
     let gusts = gusts.then(|| serde_json::to_string(&gusts_of(&of[0].0)).unwrap());
-    let files = OptionFiles {
-        force: Some(force.as_bytes()),
-        gusts: gusts.as_deref().map(str::as_bytes),
-        ..OptionFiles::default()
-    };
+    let files = [
+        Some(force.as_bytes()),
+        gusts.as_deref().map(str::as_bytes),
+        None,
+    ];
     Resources::from_bytes(of[0].0.to_json().unwrap().as_bytes(), files).unwrap()
 }
 
@@ -343,11 +343,7 @@ fn models_without_order_are_refused() {
     let json = all[0].0.to_json().unwrap();
     let gusts = serde_json::to_vec(&gusts_of(&all[0].0)).unwrap();
     let force = options.to_json().unwrap();
-    let files = OptionFiles {
-        force: Some(force.as_bytes()),
-        gusts: Some(&gusts),
-        ..OptionFiles::default()
-    };
+    let files = [Some(force.as_bytes()), Some(&gusts), None];
     let refused = Resources::from_bytes(json.as_bytes(), files).unwrap_err();
     assert!(
         refused.to_string().contains("strips of all models"),

@@ -2,7 +2,7 @@
 
 use super::{Exported, bridge_of, fixture, index, instance, start};
 use crate::instance::Instance;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
@@ -23,7 +23,7 @@ fn both(range: ReducedFrequencyRange) -> [Instance; 2] {
     model.tested_range = range;
     let (json, options) = (model.to_json().unwrap(), bridge_of(&model));
     let options = options.to_json().unwrap();
-    let section = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+    let section = Resources::from_bytes(json.as_bytes(), [None; 3]).unwrap();
     let bridge = Resources::of_bridge(json.as_bytes(), options.as_bytes(), None).unwrap();
     [section, bridge].map(|resources| {
         let mut unit = Instance::new(resources).unwrap();

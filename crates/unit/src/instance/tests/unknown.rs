@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::instance::Instance;
 use crate::instance::section::OnsetCard;
 use crate::onset_bounds::OnsetBounds;
-use crate::resources::{OptionFiles, Resources};
+use crate::resources::Resources;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::ReducedFrequency;
 
@@ -115,7 +115,7 @@ fn slow_wind_of_which_no_test_tells_is_not_stable() {
     ] {
         let json = model.to_json().unwrap();
         let options = bridge_of(&model).to_json().unwrap();
-        let section = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+        let section = Resources::from_bytes(json.as_bytes(), [None; 3]).unwrap();
         let bridge = Resources::of_bridge(json.as_bytes(), options.as_bytes(), None).unwrap();
         for resources in [section, bridge] {
             let mut unit = Instance::new(resources).unwrap();
@@ -141,10 +141,7 @@ fn an_onset_that_data_do_not_determine_says_so() {
         undetermined: Some("not determined by these data: the interval contains zero".into()),
     };
     let json = serde_json::to_string(&bounds).unwrap();
-    let files = OptionFiles {
-        bounds: Some(json.as_bytes()),
-        ..OptionFiles::default()
-    };
+    let files = [None, None, Some(json.as_bytes())];
     let section = Resources::from_bytes(&model, files).unwrap();
     let trained = TrainedModel::from_json(std::str::from_utf8(&model).unwrap()).unwrap();
     let mut options = bridge_of(&trained);
