@@ -9,7 +9,8 @@ use super::wind::WindArgs;
 use super::{figures, headline};
 use crate::buffeting::peak_factor;
 use crate::files::report_block::ReportBlock;
-use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, shown_in};
+use crate::plausibility::significant;
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, sections_of, shown_in};
 use crate::study::{BuffetingStudy, SectionBuffetingBlock, buffeting_study};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -69,7 +70,11 @@ pub(super) fn of_study(
         format!("{} {:.4} {unit}", dof.symbol(), factor * rms)
     });
     let rms: Vec<String> = rms.collect();
-    let line = format!("RMS at {} m/s: {}", last.speed_m_s, rms.join(", "));
+    let line = format!(
+        "RMS at {} m/s: {}",
+        significant(last.speed_m_s),
+        rms.join(", ")
+    );
     let tested = tested(&results);
     let further = results.without_response().into_iter();
     let further = further.chain(tested.lines().map(str::to_owned));
@@ -77,6 +82,23 @@ pub(super) fn of_study(
     let line = line.collect::<Vec<_>>().join("; ");
     write(&study.name, OF_STUDY, &results, Some(verdict), out)?;
     Ok(line)
+}
+
+/// What an earlier run of a study left of its response is not of this one, which has none.
+pub(super) fn none_of_study(out: &mut OutputDir) {
+    let page = std::fs::read_to_string(out.target(PAGE));
+    if page.is_ok_and(|page| sections_of(&page, OF_STUDY).is_some()) {
+        outdated(out);
+    }
+}
+
+/// What an earlier run left here, figures at other wind speeds among it.
+fn outdated(out: &mut OutputDir) {
+    let found = std::fs::read_dir(out.target("")).into_iter().flatten();
+    let names = found.flatten().map(|e| e.file_name());
+    let own = |name: &str| name.starts_with("buffeting.") || name.starts_with("buffeting_spectra_");
+    let named: Vec<_> = names.filter(|n| n.to_str().is_some_and(own)).collect();
+    named.iter().for_each(|name| out.outdated(name));
 }
 
 /// The results, their figures and their page.
@@ -87,6 +109,7 @@ fn write(
     verdict: Option<&Verdict>,
     out: &mut OutputDir,
 ) -> Result<()> {
+    outdated(out);
     out.write_json("buffeting.json", "buffeting-results", results)?;
     let mut drawn = Vec::new();
     let mut draw = |stem: &str, caption: String, figure: Figure| {
@@ -98,7 +121,7 @@ fn write(
         draw("buffeting", "RMS over wind speed.".to_owned(), figure)?;
     }
     for spectra in &results.spectra {
-        let speed = spectra.speed_m_s;
+        let speed = significant(spectra.speed_m_s);
         let title = format!("{name} at {speed} m/s");
         let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
         let caption = format!("Spectra at {speed} m/s times the frequency.");
