@@ -17,6 +17,11 @@ use std::path::Path;
 
 /// The page of the response.
 pub(super) const PAGE: &str = "buffeting.html";
+/// Its numbers.
+const JSON: &str = "buffeting.json";
+/// Stems of its figures, that of spectra followed by a wind speed.
+const RMS: &str = "buffeting";
+const SPECTRA: &str = "buffeting_spectra_";
 /// Key of that page where it is part of a study.
 pub(super) const OF_STUDY: &str = "study";
 /// Length of record for which peaks are expected, s.
@@ -94,11 +99,9 @@ pub(super) fn none_of_study(out: &mut OutputDir) {
 
 /// What an earlier run left here, figures at other wind speeds among it.
 fn outdated(out: &mut OutputDir) {
-    let found = std::fs::read_dir(out.target("")).into_iter().flatten();
-    let names = found.flatten().map(|e| e.file_name());
-    let own = |name: &str| name.starts_with("buffeting.") || name.starts_with("buffeting_spectra_");
-    let named: Vec<_> = names.filter(|n| n.to_str().is_some_and(own)).collect();
-    named.iter().for_each(|name| out.outdated(name));
+    [PAGE, JSON].iter().for_each(|name| out.outdated(name));
+    figures::outdated(RMS, out);
+    figures::outdated_numbered(SPECTRA, out);
 }
 
 /// The results, their figures and their page.
@@ -110,7 +113,7 @@ fn write(
     out: &mut OutputDir,
 ) -> Result<()> {
     outdated(out);
-    out.write_json("buffeting.json", "buffeting-results", results)?;
+    out.write_json(JSON, "buffeting-results", results)?;
     let mut drawn = Vec::new();
     let mut draw = |stem: &str, caption: String, figure: Figure| {
         drawn.push((caption, figure.clone()));
@@ -118,14 +121,14 @@ fn write(
     };
     if !results.responses.is_empty() {
         let figure = buffeting_rms_figure(name, results)?;
-        draw("buffeting", "RMS over wind speed.".to_owned(), figure)?;
+        draw(RMS, "RMS over wind speed.".to_owned(), figure)?;
     }
     for spectra in &results.spectra {
         let speed = significant(spectra.speed_m_s);
         let title = format!("{name} at {speed} m/s");
         let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
         let caption = format!("Spectra at {speed} m/s times the frequency.");
-        draw(&format!("buffeting_spectra_{speed}"), caption, figure)?;
+        draw(&format!("{SPECTRA}{speed}"), caption, figure)?;
     }
     let page = page(name, key, results, verdict, drawn)?;
     out.write(PAGE, rendered(&page)?)
