@@ -9,13 +9,19 @@ use super::wind::WindArgs;
 use super::{figures, headline};
 use crate::buffeting::peak_factor;
 use crate::files::report_block::ReportBlock;
-use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, shown_in};
+use crate::plausibility::significant;
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure, sections_of, shown_in};
 use crate::study::{BuffetingStudy, SectionBuffetingBlock, buffeting_study};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// The page of the response.
 pub(super) const PAGE: &str = "buffeting.html";
+/// Its numbers.
+const JSON: &str = "buffeting.json";
+/// Stems of its figures, that of spectra followed by a wind speed.
+const RMS: &str = "buffeting";
+const SPECTRA: &str = "buffeting_spectra_";
 /// Key of that page where it is part of a study.
 pub(super) const OF_STUDY: &str = "study";
 /// Length of record for which peaks are expected, s.
@@ -69,7 +75,11 @@ pub(super) fn of_study(
         format!("{} {:.4} {unit}", dof.symbol(), factor * rms)
     });
     let rms: Vec<String> = rms.collect();
-    let line = format!("RMS at {} m/s: {}", last.speed_m_s, rms.join(", "));
+    let line = format!(
+        "RMS at {} m/s: {}",
+        significant(last.speed_m_s),
+        rms.join(", ")
+    );
     let tested = tested(&results);
     let further = results.without_response().into_iter();
     let further = further.chain(tested.lines().map(str::to_owned));
@@ -77,6 +87,21 @@ pub(super) fn of_study(
     let line = line.collect::<Vec<_>>().join("; ");
     write(&study.name, OF_STUDY, &results, Some(verdict), out)?;
     Ok(line)
+}
+
+/// What an earlier run of a study left of its response is not of this one, which has none.
+pub(super) fn none_of_study(out: &mut OutputDir) {
+    let page = std::fs::read_to_string(out.target(PAGE));
+    if page.is_ok_and(|page| sections_of(&page, OF_STUDY).is_some()) {
+        outdated(out);
+    }
+}
+
+/// What an earlier run left here, figures at other wind speeds among it.
+fn outdated(out: &mut OutputDir) {
+    [PAGE, JSON].iter().for_each(|name| out.outdated(name));
+    figures::outdated(RMS, out);
+    figures::outdated_numbered(SPECTRA, out);
 }
 
 /// The results, their figures and their page.
@@ -87,7 +112,8 @@ fn write(
     verdict: Option<&Verdict>,
     out: &mut OutputDir,
 ) -> Result<()> {
-    out.write_json("buffeting.json", "buffeting-results", results)?;
+    outdated(out);
+    out.write_json(JSON, "buffeting-results", results)?;
     let mut drawn = Vec::new();
     let mut draw = |stem: &str, caption: String, figure: Figure| {
         drawn.push((caption, figure.clone()));
@@ -95,14 +121,14 @@ fn write(
     };
     if !results.responses.is_empty() {
         let figure = buffeting_rms_figure(name, results)?;
-        draw("buffeting", "RMS over wind speed.".to_owned(), figure)?;
+        draw(RMS, "RMS over wind speed.".to_owned(), figure)?;
     }
     for spectra in &results.spectra {
-        let speed = spectra.speed_m_s;
+        let speed = significant(spectra.speed_m_s);
         let title = format!("{name} at {speed} m/s");
         let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
         let caption = format!("Spectra at {speed} m/s times the frequency.");
-        draw(&format!("buffeting_spectra_{speed}"), caption, figure)?;
+        draw(&format!("{SPECTRA}{speed}"), caption, figure)?;
     }
     let page = page(name, key, results, verdict, drawn)?;
     out.write(PAGE, rendered(&page)?)

@@ -51,6 +51,7 @@ pub(crate) fn run(args: &MonteCarloArgs, progress: &Progress) -> Result<Answer> 
         result.map_err(|e| MonteCarloPlan::locate(&plan_text, e).in_file(&args.plan))?;
     result.verdict = verdict(&plan, &model, &result.findings)?;
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.plan)))?;
+    figures::outdated("monte_carlo", &mut out);
     if result.onsets > 1 {
         let draw = || onset_distribution_figure(&result);
         figures::write("monte_carlo", &mut out, draw)?;

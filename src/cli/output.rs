@@ -153,6 +153,17 @@ impl OutputDir {
         self.outdated.push(name.as_ref().to_path_buf());
     }
 
+    /// The same of files whose names have a number between these parts.
+    pub(crate) fn outdated_numbered(&mut self, before: &str, after: &str) {
+        let found = fs::read_dir(&self.directory).into_iter().flatten();
+        let names = found
+            .flatten()
+            .filter_map(|e| e.file_name().into_string().ok());
+        let number = |name: &str| name.strip_prefix(before)?.strip_suffix(after)?.parse().ok();
+        let numbered = names.filter(|name| number(name).is_some_and(f64::is_finite));
+        self.outdated.extend(numbered.map(PathBuf::from));
+    }
+
     /// Leaves a file that users edit as it is when it differs from the staged `name`, unless `force`; says whether it
     /// was left.
     pub(crate) fn keep_edited(&mut self, name: impl AsRef<Path>, force: bool) -> Result<bool> {

@@ -49,6 +49,8 @@ pub(crate) fn run(args: &WindArgs, progress: &Progress) -> Result<Answer> {
 
 fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> Result<()> {
     figures::write("coefficients", out, || coefficients(results))?;
+    figures::outdated("equilibrium", out);
+    figures::outdated("quasi_steady_modes", out);
     if results.equilibria.points.is_empty() {
         return Ok(());
     }

@@ -49,6 +49,7 @@ pub(crate) fn flutter_figure(
     out: &mut OutputDir,
 ) -> Result<()> {
     let (curves, onsets) = (&results.curves, &results.onsets);
+    figures::outdated(FIGURE, out);
     if curves.is_empty() {
         return Err(Error::Numerical("no modes to draw".into()));
     }
@@ -101,6 +102,7 @@ pub(super) fn write_curves(
     out: &mut OutputDir,
 ) -> Result<()> {
     out.write(CURVES, curves_csv(&study.name, curves))?;
+    figures::outdated(ROOTS, out);
     if curves.is_empty() {
         return Ok(());
     }

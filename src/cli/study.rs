@@ -262,6 +262,7 @@ impl Stages<'_> {
         own: Option<&TrainedWithReport>,
         verdict: &Verdict,
     ) -> Result<Option<String>> {
+        buffeting::none_of_study(&mut self.out);
         let Some(block) = self.study.buffeting.as_ref().filter(|_| own.is_some()) else {
             return Ok(None);
         };

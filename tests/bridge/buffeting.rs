@@ -69,6 +69,21 @@ fn agreed(text: &str) -> Vec<[f64; 3]> {
     found.frequency.rms.clone()
 }
 
+/// Half the wind all along the bridge, twice as fast, is the same wind.
+#[test]
+fn the_wind_of_a_profile_is_that_at_the_girder() {
+    let halved = "[wind]\nprofile = [{ along_m = 0, factor = 0.5 }]\n";
+    let [a, b] = [(text(), 30.0), (text() + halved, 60.0)].map(|(text, speed_m_s)| {
+        let study = read(&text.replace("records = 12", "records = 2"));
+        let block = study.buffeting_block().unwrap();
+        let found = study.buffeting(&block, speed_m_s, &|_, _| {}).unwrap();
+        [found.frequency.rms, found.time.unwrap().rms].concat()
+    });
+    for (a, b) in a.as_flattened().iter().zip(b.as_flattened()) {
+        assert!((a - b).abs() < 1e-6 * a, "{a} {b}");
+    }
+}
+
 const STATICS: &str = "static = { drag = 0.08, lift = -0.15, moment = 0.03, lift_slope = 4.5, moment_slope = 1.2 }\nmotions =";
 const GUSTS: &str = "[buffeting]\nnodes = [\"1081\", \"1156\"]\n\
     along = { spectrum = { shape = { kind = \"kaimal\" }, length_m = 150.0, intensity = 0.12 } }\n\

@@ -1,6 +1,6 @@
 //! Whole bridges against the section, against sums written out, and against the whole matrix.
 
-use crate::bridges::{SEARCH, THREE, TWO, coupled, langenuen, langenuen_text, near, onset};
+use crate::bridges::{SEARCH, THREE, TWO, coupled, langenuen, langenuen_text, near, onset, read};
 use aerodeck::aerodynamics::derivatives::InterpolatedTable;
 use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
@@ -246,6 +246,45 @@ fn static_deflection_by_hand() {
         static_deflection(&bridge, &[[0.0, 0.0, 0.03]], &at_rest, 0.99 * divergence).unwrap();
     let half = static_deflection(&bridge, &[[0.0, 0.0, 0.03]], &at_rest, 0.5 * divergence).unwrap();
     assert!(close[node][2] > 20.0 * half[node][2]);
+}
+
+/// Scatter and form of the interval of an onset, with a girder that ends at a node, and another beyond; in either order.
+fn parts_of_interval(other: Option<(&str, &str)>, swapped: bool) -> [f64; 2] {
+    let whole = langenuen_text("LN21-5200", TWO, "modified_akima");
+    let whole = whole.replace("0.002\n", "0.002\nselect = [2, 3, 5, 12, 14, 16, 17, 23]\n");
+    let (head, girder) = whole.split_once("[[section]]\n").unwrap();
+    let (girder, tail) = girder.split_once("[flutter]").unwrap();
+    let mut parts = vec![girder.to_owned()];
+    if let Some((deck, width)) = other {
+        let far = girder.replace("girder", "far").replace("31.0", width);
+        parts[0] += "to = \"1151\"\n";
+        parts.push(far.replace("LN21-5200", deck) + "from = \"1156\"\n");
+    }
+    if swapped {
+        parts.reverse();
+    }
+    let sections: String = parts.iter().map(|p| format!("[[section]]\n{p}")).collect();
+    let study = read(&format!("{head}{sections}[flutter]{tail}"));
+    let (section, tested) = (coupled(&study.by_model), study.tested_range());
+    let found = onset(find_onset("bridge", &section, &SEARCH, tested).unwrap());
+    match study.onset_interval(&found).unwrap() {
+        OnsetInterval::Known(known) => [known.parts.scatter_m_s, known.parts.form_m_s.unwrap()],
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A girder in two parts of one table has the interval of the girder in one: what the tests leave open is open of both parts together. Of
+/// parts of two tables it does not depend on which comes first, whose width the others are asked in.
+#[test]
+fn the_interval_does_not_depend_on_how_sections_are_written() {
+    let other = Some(("LN21-6100", "25.0"));
+    for (a, b) in [
+        ((None, false), (Some(("LN21-5200", "31.0")), false)),
+        ((other, false), (other, true)),
+    ] {
+        let [a, b] = [a, b].map(|(other, swapped)| parts_of_interval(other, swapped));
+        (0..2).for_each(|i| near(a[i] / b[i], 1.0, 1e-3));
+    }
 }
 
 /// Modes of one shape make the section; so the interval of its onset is that of the section, which takes its slopes from the

@@ -2,7 +2,7 @@
 
 use crate::bridge::folder;
 use crate::browser;
-use crate::command::{aerodeck, refused, succeeds};
+use crate::command::{aerodeck, listing, refused, succeeds};
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::study::bridge::BridgeStudy;
 use assert_cmd::Command;
@@ -209,6 +209,27 @@ fn the_report_of_a_bridge_has_its_response_to_turbulence() {
     succeeds(at, &["bridge", "flutter", "bridge.toml", "--out", "r"]);
     let report = fs::read_to_string(at.join("r/report.html")).unwrap();
     assert!(!report.contains("Buffeting at"));
+    // nor does a motion stand beside a search that found none, or a section that is no longer there
+    for name in [
+        "bridge_derivatives_1.svg",
+        "bridge_derivatives_9.svg",
+        "flutter_motion.csv",
+    ] {
+        fs::write(at.join("r").join(name), "old").unwrap();
+    }
+    fs::write(
+        &path,
+        text.replace("speed_max_m_s = 100", "speed_max_m_s = 20"),
+    )
+    .unwrap();
+    succeeds(at, &["bridge", "flutter", "bridge.toml", "--out", "r"]);
+    let left = listing(&at.join("r"));
+    let old = |n: &&String| n.starts_with("flutter_") || *n == "bridge_derivatives_9.svg";
+    assert_eq!(left.iter().find(old), None);
+    assert!(
+        left.contains(&"bridge_derivatives_1.svg".to_owned()),
+        "{left:?}"
+    );
 }
 
 /// A wind in which the bridge is unstable has no response; the others do, and what does not move has no peaks.
@@ -235,6 +256,10 @@ fn winds_without_a_response_are_named_beside_the_others() {
     assert!(at.join("r/bridge_spectra_30.csv").exists());
     let page = fs::read_to_string(at.join("r/buffeting.html")).unwrap();
     assert!(page.contains(why), "not on the page");
+    succeeds(at, &[&run[..], &["--speed", "30", "--out", "r"]].concat());
+    let spectra = listing(&at.join("r")).into_iter();
+    let spectra = spectra.filter(|n| n.starts_with("bridge_spectra"));
+    assert_eq!(spectra.collect::<Vec<_>>(), ["bridge_spectra.csv"]);
     let (code, _, error) = aerodeck(at, &[&run[..], &["--speed", "90"]].concat());
     assert!(code == 1 && error.contains(why), "{code} {error}");
 

@@ -1,7 +1,7 @@
 //! Turbulence that a study states.
 
 use crate::bridge::folder;
-use crate::command::{aerodeck, flowing, succeeds};
+use crate::command::{aerodeck, flowing, listing, succeeds};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -38,6 +38,20 @@ fn a_study_states_its_turbulence() {
     let told = succeeds(at, &["buffeting", "wind.toml", "--json"]);
     let told: Value = serde_json::from_str(&told).unwrap();
     assert_eq!(of_study["responses"], told["buffeting"]["responses"]);
+
+    // what was found at other speeds goes with them, and all of it with the turbulence
+    let uneven = gusts.replace(&speeds, &format!("[{}]", 40.0 / 3.0));
+    fs::write(at.join("gusts.toml"), uneven).unwrap();
+    let text = succeeds(at, &["study", "gusts.toml", "--out", "r", "--force"]);
+    assert!(text.contains("\nGusts     RMS at 13.33 m/s: y "), "{text}");
+    let names = || listing(&at.join("r")).into_iter();
+    let of_gusts = names().filter(|n| n.starts_with("buffeting_spectra"));
+    assert_eq!(
+        of_gusts.collect::<Vec<_>>(),
+        ["buffeting_spectra_13.33.svg"]
+    );
+    succeeds(at, &["study", "study.toml", "--out", "r", "--force"]);
+    assert!(!names().any(|n| n.starts_with("buffeting")));
 
     let fast = gusts.replace(&speeds, "[500.0]");
     fs::write(at.join("gusts.toml"), fast).unwrap();

@@ -28,6 +28,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
 
+/// The motion at the onset as numbers, by its amplitudes and over one period.
+const MOTION: &str = "flutter_motion.csv";
+const ANIMATION: &str = "flutter_animation.csv";
 /// Phases of an animation over one period.
 const PHASES: usize = 24;
 /// Speeds over the onset.
@@ -196,6 +199,14 @@ pub(super) fn renew(folder: &Path, text: &str) -> Result<()> {
 
 /// Stages figures and tables.
 fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> Result<()> {
+    let of_bridge = [FLUTTER_FIGURE, ROOTS_FIGURE, RESPONSE_FIGURE, MOTION_FIGURE];
+    of_bridge
+        .iter()
+        .for_each(|stem| figures::outdated(stem, out));
+    [CURVES, MOTION, ANIMATION]
+        .iter()
+        .for_each(|name| out.outdated(name));
+    figures::outdated_numbered(DERIVATIVES_FIGURE, out);
     let verdict = &Verdict::judge(&study.evidence(results, &results.failed));
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
@@ -219,8 +230,8 @@ fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> 
         let title = format!("{}: motion at flutter", study.file.name);
         let draw = || flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title);
         figures::write(MOTION_FIGURE, out, draw)?;
-        out.write("flutter_motion.csv", motion_csv(motion))?;
-        out.write("flutter_animation.csv", animation_csv(motion))?;
+        out.write(MOTION, motion_csv(motion))?;
+        out.write(ANIMATION, animation_csv(motion))?;
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! How far the data behind the models of the sections leave the onset of a bridge open.
 
-use super::BridgeStudy;
 use super::answers::coupled;
+use super::{BridgeStudy, SectionForceModels};
 use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result};
@@ -25,8 +25,8 @@ const REACH: f64 = 2.0;
 
 impl BridgeStudy {
     /// 95 % interval of an onset of the bridge by its models: the covariance of the coefficients of every section through the
-    /// slopes of the onset, and the onsets with the other forms that explain the data of a section as well, sections independent of
-    /// each other. Slopes are differences of onsets, each found by following the mode that flutters.
+    /// slopes of the onset, and the onsets with the other forms that explain the data of a section as well, sections of other tests
+    /// independent of each other. Slopes are differences of onsets, each found by following the mode that flutters.
     ///
     /// # Errors
     /// [`Error::Numerical`] when the mode cannot be followed to nearby coefficients.
@@ -34,7 +34,7 @@ impl BridgeStudy {
         let nearby = NearbyOnset::new(&self.by_model, &onset.at)?;
         let (mut variance, mut of_each, mut spreads) = (0.0, 0.0, Vec::new());
         let mut between_speeds = None;
-        for (section, forces) in self.sections.iter().enumerate() {
+        for (section, forces) in self.fits() {
             let name = &self.file.sections[section].name;
             let known = match &forces.uncertainty {
                 Ok(Some(known)) => known,
@@ -101,17 +101,39 @@ impl BridgeStudy {
         }))
     }
 
-    /// The bridge by its models with other forces of one section.
+    /// The first section that has the same fit to the same tests: what these leave open is open of all such sections together.
+    pub(super) fn first_of_fit(&self, section: usize) -> usize {
+        let fit = |s: &usize| {
+            Some(
+                &self.sections[*s]
+                    .uncertainty
+                    .as_ref()
+                    .ok()?
+                    .as_ref()?
+                    .coefficients,
+            )
+        };
+        let same = |s: &usize| fit(s).is_some() && fit(s) == fit(&section);
+        (0..section).find(same).unwrap_or(section)
+    }
+
+    /// The first section of every fit.
+    fn fits(&self) -> impl Iterator<Item = (usize, &SectionForceModels)> {
+        let all = self.sections.iter().enumerate();
+        all.filter(|(section, _)| self.first_of_fit(*section) == *section)
+    }
+
+    /// The bridge by its models with other forces of the sections of one fit.
     fn with_forces(&self, section: usize, forces: Arc<dyn Transfer>) -> Bridge {
         let mut bridge = self.by_model.clone();
         let groups = bridge.groups.iter_mut().zip(&self.section_of_group);
-        for (group, _) in groups.filter(|(_, of)| **of == section) {
+        for (group, _) in groups.filter(|(_, of)| self.first_of_fit(**of) == section) {
             group.forces = forces.clone();
         }
         bridge
     }
 
-    /// Onsets with every form that explains the data of a section as well.
+    /// Onsets with every form that explains the data of the sections of a fit as well.
     fn form_spread(
         &self,
         section: usize,
@@ -136,7 +158,7 @@ impl BridgeStudy {
     pub(super) fn contradictions(&self, onset: &Onset) -> Result<Vec<String>> {
         let nearby = NearbyOnset::new(&self.by_model, &onset.at)?;
         let mut found = Vec::new();
-        for (section, forces) in self.sections.iter().enumerate() {
+        for (section, forces) in self.fits() {
             let (Ok(Some(known)), Some(tested)) = (&forces.uncertainty, forces.tested) else {
                 continue;
             };

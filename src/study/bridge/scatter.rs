@@ -228,12 +228,13 @@ impl OnsetSampler<'_> {
         Ok(bridge)
     }
 
-    /// Groups of one section share what was measured on it; given factors are drawn for each group by itself.
+    /// Groups of one fit share what was measured; given factors are drawn for each group by itself.
     fn scatter_forces(&self, bridge: &mut Bridge, random: &mut impl Rng, part: f64) -> Result<()> {
         let scale = self.scale.map_or(1.0, |scale| scale.draw(random));
         let part = part * scale;
         let mut models = vec![None; self.forces.len()];
-        for (group, &section) in bridge.groups.iter_mut().zip(&self.study.section_of_group) {
+        for (group, section) in bridge.groups.iter_mut().zip(&self.study.section_of_group) {
+            let section = self.study.first_of_fit(*section);
             group.forces = match (&self.forces[section], &models[section]) {
                 (Some(_), Some(drawn)) => Arc::clone(drawn),
                 (Some(draws), None) => Arc::new(draws.model(random, part)?),

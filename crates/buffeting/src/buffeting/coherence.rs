@@ -7,7 +7,7 @@ use crate::error::{Result, ensure};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-/// Decay of the coherence along the span, `exp(−decay f Δs/V)`, for each component of the turbulence.
+/// Decay of the coherence along the span, `exp(−decay f Δs/V)` with the mean wind V of both places, for each component of the turbulence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Coherence {
@@ -52,17 +52,17 @@ impl Coherence {
         Ok(())
     }
 
-    /// Coherence of neighbouring nodes at a frequency, one a gap.
+    /// Coherence of neighbouring nodes at a frequency, one a gap, in the winds at all nodes.
     pub(super) fn of_gaps(
         &self,
         component: GustComponent,
         nodes: &[Node],
         frequency_hz: f64,
-        speed_m_s: f64,
+        winds_m_s: &[f64],
     ) -> Vec<f64> {
-        let rate = self.decay(component) * frequency_hz / speed_m_s;
-        let gaps = nodes.windows(2);
-        gaps.map(|n| (-rate * (n[1].along_m - n[0].along_m)).exp())
+        let twice_rate = 2.0 * self.decay(component) * frequency_hz;
+        let gaps = nodes.windows(2).zip(winds_m_s.windows(2));
+        gaps.map(|(n, v)| (-twice_rate * (n[1].along_m - n[0].along_m) / (v[0] + v[1])).exp())
             .collect()
     }
 }

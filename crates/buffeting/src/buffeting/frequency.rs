@@ -127,6 +127,7 @@ impl BuffetingProblem<'_> {
 
     /// The components of the turbulence at a frequency.
     pub(super) fn gusts_at(&self, frequency_hz: f64, speed_m_s: f64) -> Vec<GustAlongSpan> {
+        let winds = self.winds_m_s(speed_m_s);
         let mut gusts = Vec::with_capacity(2);
         for component in GustComponent::BOTH {
             let Some(gust) = self.turbulence.component(component) else {
@@ -141,7 +142,7 @@ impl BuffetingProblem<'_> {
             gusts.push(GustAlongSpan {
                 component,
                 sizes,
-                gaps: coherence.of_gaps(component, &self.nodes, frequency_hz, speed_m_s),
+                gaps: coherence.of_gaps(component, &self.nodes, frequency_hz, &winds),
             });
         }
         gusts

@@ -238,6 +238,13 @@ impl<'a> BuffetingProblem<'a> {
         all
     }
 
+    /// Mean wind at every node; that of the bridge where none blows at strips.
+    pub(super) fn winds_m_s(&self, speed_m_s: f64) -> Vec<f64> {
+        let factors = self.at_nodes(|strips| Some(strips.wind_factor));
+        let winds = factors.into_iter().map(|f| f.unwrap_or(1.0) * speed_m_s);
+        winds.collect()
+    }
+
     /// Part of the force of long gusts that gusts of a frequency exert on strips, times the mean wind.
     pub(super) fn admittance(
         &self,

@@ -100,6 +100,7 @@ impl BuffetingProblem<'_> {
         // a stream of its own for each component: switching one off leaves the other as it is
         let mut random = random_stream(seed, component as u64);
         let width_hz = 1.0 / (samples as f64 * step_s);
+        let winds = self.winds_m_s(speed_m_s);
         for k in 1..samples / 2 {
             let frequency = k as f64 * width_hz;
             let sizes = self.at_nodes(|strips| {
@@ -108,7 +109,7 @@ impl BuffetingProblem<'_> {
                 variance.sqrt()
             });
             let coherence = &self.coherence;
-            let gaps = coherence.of_gaps(component, &self.nodes, frequency, speed_m_s);
+            let gaps = coherence.of_gaps(component, &self.nodes, frequency, &winds);
             let mut chain = Complex::default();
             for (n, row) in rows.iter_mut().enumerate() {
                 let (a, b): (f64, f64) =

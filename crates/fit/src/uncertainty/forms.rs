@@ -119,7 +119,8 @@ impl FormEnsemble {
         let tested = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
             .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
         let table = table_of(samples, dofs)?;
-        let by = |by| InterpolatedTable::by(by, &table, dofs, Extrapolation::Refuse);
+        // where it was tested is said with every search; a bridge asks at the ends in other widths, off by a rounding
+        let by = |by| InterpolatedTable::by(by, &table, dofs, Extrapolation::Hold);
         let read = INTERPOLATIONS.into_iter().map(by).collect::<Result<_>>()?;
         let numbers = samples.len() as f64;
         let fitted = threads::each(&fitted_forms(tested), true, |(form, fit)| {
