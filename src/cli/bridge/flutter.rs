@@ -85,7 +85,10 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     });
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     let mut text = text::text(&study, &results, &verdict, progress.verbose);
-    let scatter = scattered.as_ref().map(scatter_line);
+    let nothing = args.samples.is_some() && results.onset().is_none();
+    let nothing =
+        nothing.then(|| "Scatter: none, the models have no onset that scatters".to_owned());
+    let scatter = scattered.as_ref().map(scatter_line).or(nothing);
     text.extend(scatter.iter().map(|line| format!("{line}\n")));
     let inputs = leave_inputs(&args.bridge.bridge, &study.file, &mut out)?;
     text.extend(failed.iter().map(|failed| format!("failed: {failed}\n")));
@@ -156,8 +159,12 @@ fn scatter_line(of: &ScatteredOnset) -> String {
     let (samples, onsets) = (of.scatter.samples, &of.onsets);
     let (mean, deviation) = (onsets.mean_m_s, onsets.standard_deviation_m_s);
     let ([low, high], none) = (onsets.interval_m_s, onsets.without_onset);
+    let with = match none {
+        0 => String::new(),
+        _ => format!(" of the {} with an onset", onsets.speeds_m_s.len()),
+    };
     format!(
-        "Scatter of {samples} samples: {mean:.3} m/s, standard deviation {deviation:.3} m/s, 95 % between {low:.3} and {high:.3} m/s; {none} without onset"
+        "Scatter of {samples} samples: {mean:.3} m/s, standard deviation {deviation:.3} m/s, 95 %{with} between {low:.3} and {high:.3} m/s; {none} without onset"
     )
 }
 
