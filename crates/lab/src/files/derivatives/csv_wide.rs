@@ -271,7 +271,9 @@ fn find_columns<'a>(
         } else if is_argument(name, convention.argument) {
             columns.arguments.push(i);
         } else if name.eq_ignore_ascii_case(SPEED) {
-            columns.speed = Some(i);
+            let before = columns.speed.replace(i);
+            let expected = format_args!("`{name}` once");
+            ensure(before.is_none(), Place::line(line), expected, "it twice")?;
         } else {
             unnamed.push(i);
         }

@@ -52,6 +52,15 @@ fn every_derivative_has_the_argument_before_it() {
     assert_eq!(over(Derivative::H1), [2.0, 4.0]);
     assert_eq!(over(Derivative::H3), [2.5, 5.0]);
     assert_eq!(over(Derivative::A3), [3.0]);
+    let twice = text.replace(
+        names,
+        "v_hat,H1,v_hat,mean_speed_m_s,mean_speed_m_s,v_hat,A1,A2,A3",
+    );
+    let said = read(&twice, &scanlan()).unwrap_err().to_string();
+    assert_eq!(
+        said,
+        "line 1: expected `mean_speed_m_s` once, found it twice"
+    );
     let behind = text.replace("v_hat,H1,", "H1,v_hat,");
     let said = read(&behind, &scanlan()).unwrap_err().to_string();
     assert!(
