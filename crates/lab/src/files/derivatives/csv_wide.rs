@@ -293,14 +293,10 @@ fn find_columns<'a>(
         columns.arguments.push(only);
         unnamed.clear();
     }
-    let (first, of) = (columns.arguments[0], columns.arguments.len());
-    let before_all = columns.derivatives.iter().all(|(i, _)| first < *i);
-    let expected = format_args!(
-        "one column `{0}`, or one before every derivative",
-        names[first]
-    );
-    let found = format_args!("the first of {of} behind one");
-    ensure(of == 1 || before_all, Place::line(line), expected, found)?;
+    let (first, own) = (columns.arguments[0], columns.arguments.len() > 1);
+    let behind = columns.derivatives.iter().any(|(i, _)| *i < first);
+    let expected = "one column of the argument, or one before every derivative";
+    ensure(!(own && behind), Place::line(line), expected, "one behind")?;
     let any = !columns.derivatives.is_empty();
     let expected = format_args!("columns of derivatives, {}", convention.notation.names());
     let found = format_args!("`{}`", names.join(","));

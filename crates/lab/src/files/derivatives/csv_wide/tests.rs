@@ -64,7 +64,7 @@ fn every_derivative_has_the_argument_before_it() {
     let behind = text.replace("v_hat,H1,", "H1,v_hat,");
     let said = read(&behind, &scanlan()).unwrap_err().to_string();
     assert!(
-        said.contains("or one before every derivative, found the first of 3"),
+        said.contains("or one before every derivative, found one behind"),
         "{said}"
     );
 }
