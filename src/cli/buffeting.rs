@@ -17,11 +17,6 @@ use std::path::Path;
 
 /// The page of the response.
 pub(super) const PAGE: &str = "buffeting.html";
-/// Its numbers.
-const JSON: &str = "buffeting.json";
-/// Stems of its figures, that of spectra followed by a wind speed.
-const RMS: &str = "buffeting";
-const SPECTRA: &str = "buffeting_spectra_";
 /// Key of that page where it is part of a study.
 pub(super) const OF_STUDY: &str = "study";
 /// Length of record for which peaks are expected, s.
@@ -75,11 +70,8 @@ pub(super) fn of_study(
         format!("{} {:.4} {unit}", dof.symbol(), factor * rms)
     });
     let rms: Vec<String> = rms.collect();
-    let line = format!(
-        "RMS at {} m/s: {}",
-        significant(last.speed_m_s),
-        rms.join(", ")
-    );
+    let speed = significant(last.speed_m_s);
+    let line = format!("RMS at {speed} m/s: {}", rms.join(", "));
     let tested = tested(&results);
     let further = results.without_response().into_iter();
     let further = further.chain(tested.lines().map(str::to_owned));
@@ -99,9 +91,10 @@ pub(super) fn none_of_study(out: &mut OutputDir) {
 
 /// What an earlier run left here, figures at other wind speeds among it.
 fn outdated(out: &mut OutputDir) {
-    [PAGE, JSON].iter().for_each(|name| out.outdated(name));
-    figures::outdated(RMS, out);
-    figures::outdated_numbered(SPECTRA, out);
+    out.outdated(PAGE);
+    out.outdated("buffeting.json");
+    figures::outdated("buffeting", out);
+    out.outdated_numbered("buffeting_spectra_");
 }
 
 /// The results, their figures and their page.
@@ -113,7 +106,7 @@ fn write(
     out: &mut OutputDir,
 ) -> Result<()> {
     outdated(out);
-    out.write_json(JSON, "buffeting-results", results)?;
+    out.write_json("buffeting.json", "buffeting-results", results)?;
     let mut drawn = Vec::new();
     let mut draw = |stem: &str, caption: String, figure: Figure| {
         drawn.push((caption, figure.clone()));
@@ -121,14 +114,14 @@ fn write(
     };
     if !results.responses.is_empty() {
         let figure = buffeting_rms_figure(name, results)?;
-        draw(RMS, "RMS over wind speed.".to_owned(), figure)?;
+        draw("buffeting", "RMS over wind speed.".to_owned(), figure)?;
     }
     for spectra in &results.spectra {
         let speed = significant(spectra.speed_m_s);
         let title = format!("{name} at {speed} m/s");
         let figure = buffeting_spectra_figure(&title, &results.dofs, &[], spectra)?;
         let caption = format!("Spectra at {speed} m/s times the frequency.");
-        draw(&format!("{SPECTRA}{speed}"), caption, figure)?;
+        draw(&format!("buffeting_spectra_{speed}"), caption, figure)?;
     }
     let page = page(name, key, results, verdict, drawn)?;
     out.write(PAGE, rendered(&page)?)

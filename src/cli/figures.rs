@@ -35,13 +35,6 @@ pub(super) fn outdated(stem: &str, out: &mut OutputDir) {
     }
 }
 
-/// The same of figures whose stem goes on with a number.
-pub(super) fn outdated_numbered(stem: &str, out: &mut OutputDir) {
-    for ending in [".svg", ".png"] {
-        out.outdated_numbered(stem, ending);
-    }
-}
-
 /// Draws and writes `stem.svg`, and `stem.png` where images are wanted.
 pub(super) fn write(
     stem: &str,

@@ -153,15 +153,17 @@ impl OutputDir {
         self.outdated.push(name.as_ref().to_path_buf());
     }
 
-    /// The same of files whose names have a number between these parts.
-    pub(crate) fn outdated_numbered(&mut self, before: &str, after: &str) {
+    /// The same of figures and tables whose stem goes on with a number.
+    pub(crate) fn outdated_numbered(&mut self, stem: &str) {
         let found = fs::read_dir(&self.directory).into_iter().flatten();
-        let names = found
-            .flatten()
-            .filter_map(|e| e.file_name().into_string().ok());
-        let number = |name: &str| name.strip_prefix(before)?.strip_suffix(after)?.parse().ok();
-        let numbered = names.filter(|name| number(name).is_some_and(f64::is_finite));
-        self.outdated.extend(numbered.map(PathBuf::from));
+        for name in found.flatten().map(|e| e.file_name()) {
+            let rest = name.to_str().and_then(|n| n.strip_prefix(stem));
+            if let Some((number, "svg" | "png" | "csv")) = rest.and_then(|r| r.rsplit_once('.'))
+                && number.parse::<f64>().is_ok()
+            {
+                self.outdated(&name);
+            }
+        }
     }
 
     /// Leaves a file that users edit as it is when it differs from the staged `name`, unless `force`; says whether it

@@ -2,7 +2,7 @@
 
 use crate::bridge::folder;
 use crate::browser;
-use crate::command::{aerodeck, listing, refused, succeeds};
+use crate::command::{aerodeck, flowing, listing, refused, succeeds};
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::study::bridge::BridgeStudy;
 use assert_cmd::Command;
@@ -222,13 +222,22 @@ fn the_report_of_a_bridge_has_its_response_to_turbulence() {
         text.replace("speed_max_m_s = 100", "speed_max_m_s = 20"),
     )
     .unwrap();
-    succeeds(at, &["bridge", "flutter", "bridge.toml", "--out", "r"]);
+    let sampled = ["bridge", "flutter", "bridge.toml", "--samples", "8"];
+    let wide = ["--scatter-derivatives", "2"];
+    let said = succeeds(at, &[&sampled[..], &["--out", "r"]].concat());
+    assert!(said.contains("Scatter: none"), "{said}");
     let left = listing(&at.join("r"));
     let old = |n: &&String| n.starts_with("flutter_") || *n == "bridge_derivatives_9.svg";
     assert_eq!(left.iter().find(old), None);
     assert!(
         left.contains(&"bridge_derivatives_1.svg".to_owned()),
         "{left:?}"
+    );
+    fs::write(&path, &text).unwrap();
+    let text = flowing(&succeeds(at, &[&sampled[..], &wide].concat()));
+    assert!(
+        text.contains("Scatter of 8 samples, ") && !text.contains(", 8 of them"),
+        "{text}"
     );
 }
 

@@ -53,7 +53,7 @@ pub(super) fn run(args: &BridgeBuffetingArgs, progress: &Progress) -> Result<Ans
     out.write_json("bridge_buffeting.json", "bridge-buffeting-results", &whole)?;
     let mut text = String::new();
     out.outdated("bridge_spectra.csv");
-    out.outdated_numbered("bridge_spectra_", ".csv");
+    out.outdated_numbered("bridge_spectra_");
     for results in &all {
         let speed = results.frequency.speed_m_s;
         let name = match speeds.len() {

@@ -28,9 +28,6 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// The motion at the onset as numbers, by its amplitudes and over one period.
-const MOTION: &str = "flutter_motion.csv";
-const ANIMATION: &str = "flutter_animation.csv";
 /// Phases of an animation over one period.
 const PHASES: usize = 24;
 /// Speeds over the onset.
@@ -85,7 +82,9 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     });
     let verdict = Verdict::judge(&study.evidence(&results, &failed));
     let mut text = text::text(&study, &results, &verdict, progress.verbose);
-    let scatter = scattered.as_ref().map(scatter_line);
+    let no_onset = args.samples.filter(|_| results.onset().is_none());
+    let no_onset = no_onset.map(|_| "Scatter: none, the models have no onset".to_owned());
+    let scatter = scattered.as_ref().map(scatter_line).or(no_onset);
     text.extend(scatter.iter().map(|line| format!("{line}\n")));
     let inputs = leave_inputs(&args.bridge.bridge, &study.file, &mut out)?;
     text.extend(failed.iter().map(|failed| format!("failed: {failed}\n")));
@@ -155,9 +154,9 @@ impl BridgeFlutterArgs {
 fn scatter_line(of: &ScatteredOnset) -> String {
     let (samples, onsets) = (of.scatter.samples, &of.onsets);
     let (mean, deviation) = (onsets.mean_m_s, onsets.standard_deviation_m_s);
-    let ([low, high], none) = (onsets.interval_m_s, onsets.without_onset);
+    let ([low, high], with) = (onsets.interval_m_s, onsets.speeds_m_s.len());
     format!(
-        "Scatter of {samples} samples: {mean:.3} m/s, standard deviation {deviation:.3} m/s, 95 % between {low:.3} and {high:.3} m/s; {none} without onset"
+        "Scatter of {samples} samples, {with} of them with an onset: {mean:.3} m/s, standard deviation {deviation:.3} m/s, 95 % of these between {low:.3} and {high:.3} m/s"
     )
 }
 
@@ -199,14 +198,13 @@ pub(super) fn renew(folder: &Path, text: &str) -> Result<()> {
 
 /// Stages figures and tables.
 fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> Result<()> {
-    let of_bridge = [FLUTTER_FIGURE, ROOTS_FIGURE, RESPONSE_FIGURE, MOTION_FIGURE];
-    of_bridge
-        .iter()
-        .for_each(|stem| figures::outdated(stem, out));
-    [CURVES, MOTION, ANIMATION]
-        .iter()
-        .for_each(|name| out.outdated(name));
-    figures::outdated_numbered(DERIVATIVES_FIGURE, out);
+    for stem in [FLUTTER_FIGURE, ROOTS_FIGURE, RESPONSE_FIGURE, MOTION_FIGURE] {
+        figures::outdated(stem, out);
+    }
+    for name in [CURVES, "flutter_motion.csv", "flutter_animation.csv"] {
+        out.outdated(name);
+    }
+    out.outdated_numbered(DERIVATIVES_FIGURE);
     let verdict = &Verdict::judge(&study.evidence(results, &results.failed));
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
@@ -230,8 +228,8 @@ fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> 
         let title = format!("{}: motion at flutter", study.file.name);
         let draw = || flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title);
         figures::write(MOTION_FIGURE, out, draw)?;
-        out.write(MOTION, motion_csv(motion))?;
-        out.write(ANIMATION, animation_csv(motion))?;
+        out.write("flutter_motion.csv", motion_csv(motion))?;
+        out.write("flutter_animation.csv", animation_csv(motion))?;
     }
     Ok(())
 }

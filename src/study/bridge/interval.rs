@@ -103,17 +103,8 @@ impl BridgeStudy {
 
     /// The first section that has the same fit to the same tests: what these leave open is open of all such sections together.
     pub(super) fn first_of_fit(&self, section: usize) -> usize {
-        let fit = |s: &usize| {
-            Some(
-                &self.sections[*s]
-                    .uncertainty
-                    .as_ref()
-                    .ok()?
-                    .as_ref()?
-                    .coefficients,
-            )
-        };
-        let same = |s: &usize| fit(s).is_some() && fit(s) == fit(&section);
+        let known = |s: usize| self.sections[s].uncertainty.as_ref().ok()?.as_ref();
+        let same = |s: &usize| known(*s).is_some() && known(*s) == known(section);
         (0..section).find(same).unwrap_or(section)
     }
 

@@ -204,7 +204,7 @@ pub(crate) fn embedded_name(text: &str) -> &str {
     name.unwrap_or_default()
 }
 
-/// Positions of the `wanted` columns among `names`, which may stand in any order.
+/// Positions of the `wanted` columns among `names`, each there once, in any order.
 pub(crate) fn find_columns<const N: usize>(
     names: &csv::StringRecord,
     wanted: [&str; N],
@@ -212,10 +212,11 @@ pub(crate) fn find_columns<const N: usize>(
 ) -> Result<[usize; N]> {
     let mut columns = [0; N];
     for (column, wanted) in columns.iter_mut().zip(wanted) {
-        *column = names
-            .iter()
-            .position(|name| name == wanted)
-            .ok_or_else(|| missing_column(names, line, wanted))?;
+        let mut at = (0..names.len()).filter(|i| names[*i] == *wanted);
+        let first = at.next();
+        *column = first.ok_or_else(|| missing_column(names, line, wanted))?;
+        let expected = format_args!("a column `{wanted}` once");
+        ensure(at.next().is_none(), Place::line(line), expected, "it twice")?;
     }
     Ok(columns)
 }

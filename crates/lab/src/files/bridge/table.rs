@@ -112,10 +112,15 @@ impl Table {
 
     /// The same, which must be there.
     pub(super) fn required(&self, names: &[&str]) -> Result<usize> {
-        self.column(names).ok_or_else(|| {
+        let at = self.column(names).ok_or_else(|| {
             let expected = format!("a column `{}`", names[0]);
             Error::input("heading", expected, format!("`{}`", self.heading.join(",")))
-        })
+        })?;
+        let (name, behind) = (&self.heading[at], &self.heading[at + 1..]);
+        let again = behind.iter().any(|h| h.eq_ignore_ascii_case(name));
+        let expected = format_args!("a column `{name}` once");
+        ensure(!again, "heading", expected, "it twice")?;
+        Ok(at)
     }
 
     /// Places of columns that must be there, each by one of its names.
@@ -233,6 +238,13 @@ mod tests {
         }
         let table = Table::parse("mode;f\n1;0,5\n").unwrap();
         assert_eq!(table.heading, ["mode", "f"]);
+    }
+
+    #[test]
+    fn a_column_stands_once() {
+        let table = Table::parse("node,ux,UX\n1,2,3\n").unwrap();
+        let said = table.columns([&["ux"]]).unwrap_err().to_string();
+        assert_eq!(said, "heading: expected a column `ux` once, found it twice");
     }
 
     #[test]

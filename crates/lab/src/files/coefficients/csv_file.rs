@@ -144,6 +144,11 @@ mod tests {
                 "line 8: expected a column `c_l`, found `angle_deg,c_d,cl,c_m`",
             ),
             (
+                "c_l,c_m",
+                "c_l,c_m,c_l",
+                "line 8: expected a column `c_l` once, found it twice",
+            ),
+            (
                 "lift normal to it, up",
                 "lift down",
                 "line 6 (sign_convention): expected `wind axes",

@@ -8,7 +8,7 @@
 //!
 //! The first row names the columns: derivatives as in the notation, with or without a star; the argument (`v_hat`,
 //! `v_star`, `k_full`, `k_semi`, or any name when the argument is stated and one column is left over); `mean_speed_m_s` if
-//! it is known. A cell may be empty where a derivative was not measured. Semicolons between the cells, then also decimal
+//! it is known. Where several columns hold the argument each derivative has the last one before it. A cell may be empty where a derivative was not measured. Semicolons between the cells, then also decimal
 //! commas (in all numbers or in none), and tabs are understood. The `# key: value` lines of the long form may stand above,
 //! all of them optional but what states the convention.
 
@@ -33,7 +33,8 @@ pub(super) type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<usize>)>;
 /// Where the numbers stand, and how they are written.
 struct WideColumns<'a> {
     names: Vec<&'a str>,
-    argument: usize,
+    /// Those of the argument; a derivative has the last one before it.
+    arguments: Vec<usize>,
     speed: Option<usize>,
     derivatives: Vec<(usize, Derivative)>,
     /// Names of columns that mean nothing here.
@@ -144,13 +145,17 @@ impl WideColumns<'_> {
         let is_whole = cells.len() == self.names.len();
         ensure(is_whole, Place::line(line), columns, cells.len())?;
         let number = |column: usize| self.number(line, column, cells[column]);
-        let argument = number(self.argument)?.unwrap_or(f64::NAN);
-        positive(self.place(line, self.argument), argument)?;
+        let arguments = self.arguments.iter().map(|a| Ok((*a, number(*a)?)));
+        let arguments = arguments.collect::<Result<Vec<_>>>()?;
         let mean_speed_m_s = self.speed.map(number).transpose()?.flatten();
         for (column, derivative) in &self.derivatives {
             let Some(value) = number(*column)? else {
                 continue;
             };
+            let before = arguments.iter().rev().find(|(a, _)| a < column);
+            let (own, argument) = before.unwrap_or(&arguments[0]);
+            let argument = argument.unwrap_or(f64::NAN);
+            positive(self.place(line, *own), argument)?;
             let point = ExpressedPoint {
                 mean_speed_m_s,
                 argument,
@@ -247,7 +252,7 @@ fn find_columns<'a>(
     convention: &Convention,
 ) -> Result<WideColumns<'a>> {
     let mut columns = WideColumns {
-        argument: usize::MAX,
+        arguments: Vec::new(),
         speed: None,
         derivatives: Vec::new(),
         others: Vec::new(),
@@ -264,14 +269,16 @@ fn find_columns<'a>(
             ensure(is_new, Place::line(line), expected, "it twice")?;
             columns.derivatives.push((i, derivative));
         } else if is_argument(name, convention.argument) {
-            columns.argument = i;
+            columns.arguments.push(i);
         } else if name.eq_ignore_ascii_case(SPEED) {
-            columns.speed = Some(i);
+            let before = columns.speed.replace(i);
+            let expected = format_args!("`{name}` once");
+            ensure(before.is_none(), Place::line(line), expected, "it twice")?;
         } else {
             unnamed.push(i);
         }
     }
-    if columns.argument == usize::MAX {
+    if columns.arguments.is_empty() {
         // the argument is stated: the only column that is nothing else is its
         let [only] = unnamed[..] else {
             let expected = format!(
@@ -283,9 +290,13 @@ fn find_columns<'a>(
             let found = format!("`{}` besides the derivatives", unnamed.join("`, `"));
             return Err(Error::input(Place::line(line), expected, found));
         };
-        columns.argument = only;
+        columns.arguments.push(only);
         unnamed.clear();
     }
+    let (first, own) = (columns.arguments[0], columns.arguments.len() > 1);
+    let behind = columns.derivatives.iter().any(|(i, _)| *i < first);
+    let expected = "one column of the argument, or one before every derivative";
+    ensure(!(own && behind), Place::line(line), expected, "one behind")?;
     let any = !columns.derivatives.is_empty();
     let expected = format_args!("columns of derivatives, {}", convention.notation.names());
     let found = format_args!("`{}`", names.join(","));

@@ -42,6 +42,33 @@ fn a_table_of_a_paper_is_read_with_notes() {
     assert_eq!(table.points(Derivative::H4).len(), 1);
 }
 
+/// Curves read off figures, each over reduced velocities of its own; behind their values these are refused.
+#[test]
+fn every_derivative_has_the_argument_before_it() {
+    let names = "v_hat,H1,v_hat,H2,H3,v_hat,A1,A2,A3";
+    let text = format!("{names}\n2,-9,2.5,1,14,3,-2,-1,3\n4,-20,5,2,60,,,,\n");
+    let table = read(&text, &scanlan()).unwrap();
+    let over = |d| table.points(d).iter().map(|p| p.v_hat).collect::<Vec<_>>();
+    assert_eq!(over(Derivative::H1), [2.0, 4.0]);
+    assert_eq!(over(Derivative::H3), [2.5, 5.0]);
+    assert_eq!(over(Derivative::A3), [3.0]);
+    let twice = text.replace(
+        names,
+        "v_hat,H1,v_hat,mean_speed_m_s,mean_speed_m_s,v_hat,A1,A2,A3",
+    );
+    let said = read(&twice, &scanlan()).unwrap_err().to_string();
+    assert_eq!(
+        said,
+        "line 1: expected `mean_speed_m_s` once, found it twice"
+    );
+    let behind = text.replace("v_hat,H1,", "H1,v_hat,");
+    let said = read(&behind, &scanlan()).unwrap_err().to_string();
+    assert!(
+        said.contains("or one before every derivative, found one behind"),
+        "{said}"
+    );
+}
+
 /// An embedded deck written out wide, in another notation, comes back, through a file as well.
 #[test]
 fn a_deck_written_wide_comes_back() {
