@@ -21,7 +21,7 @@ fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
 /// Onset of the Table 4.1 section with the default Laguerre model of the records, m/s.
 fn onset_m_s(records: &[Record]) -> f64 {
     let Fitted { model, report } =
-        fit_records(&sources(records), &TimeFit::default(), &|_| {}).unwrap();
+        fit_records(&sources(records), &TimeFit::default(), &|_, _| {}).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::new(structure, model.realize()).unwrap();
     let search = OnsetSearch {

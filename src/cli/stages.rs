@@ -13,7 +13,6 @@ use crate::files::toml_lines::of_a_kind_of_ours;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::package;
-use crate::identification;
 use crate::study::{
     Deck, FITS, KnownUncertainty, RecordSet, TrainedWithReport, UNCERTAINTY, flutter_study,
     interval_of, is_of_a_file, state_intervals, train_one,
@@ -119,11 +118,7 @@ impl<'a> Stages<'a> {
                 block,
                 deck,
                 records.unwrap_or(&none),
-                &|p: identification::FitProgress| {
-                    let total = p.passes * p.records;
-                    let done = (p.pass - 1) * p.records + p.records_done;
-                    stage.at(done, total);
-                },
+                &|done, total| stage.at(done, total),
             );
             let result = match result {
                 Ok(result) => result,
