@@ -216,15 +216,16 @@ fn derivatives(
 
 /// A figure of the stages of every run.
 fn draw_stages(processed: &Processed, out: &mut OutputDir, progress: &Progress) -> Result<()> {
-    let stage = progress.steps("figures");
     let count = processed.stages.len();
     let runs = processed.report.runs.iter().zip(&processed.stages);
-    for ((run, stages), done) in runs.zip(1..) {
-        let stem = format!("processing/{}", file_name(&run.run));
-        figures::write(&stem, out, || processing_figure(run, stages))?;
-        stage.at(done, count);
-    }
-    Ok(())
+    progress.counting("figures", |on_done| {
+        for ((run, stages), done) in runs.zip(1..) {
+            let stem = format!("processing/{}", file_name(&run.run));
+            figures::write(&stem, out, || processing_figure(run, stages))?;
+            on_done(done, count);
+        }
+        Ok(())
+    })
 }
 
 /// The derivatives with all that is known of them, and their figure.

@@ -112,14 +112,9 @@ impl<'a> Stages<'a> {
                 failed.push(StageFailure::new(stage, reason));
                 continue;
             }
-            let stage = progress.steps(&format!("training {}", block.name));
-            let result = train_one(
-                study,
-                block,
-                deck,
-                records.unwrap_or(&none),
-                &|done, total| stage.at(done, total),
-            );
+            let result = progress.counting(&format!("training {}", block.name), |on_done| {
+                train_one(study, block, deck, records.unwrap_or(&none), on_done)
+            });
             let result = match result {
                 Ok(result) => result,
                 Err(e) if is_of_a_file(&e) => return Err(e),
@@ -139,7 +134,6 @@ impl<'a> Stages<'a> {
                 out.write(name, json)?;
             }
             trained.push(result);
-            drop(stage);
         }
         leave_fingerprint(deck, out)?;
         match first_error {
