@@ -81,10 +81,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let raw = progress.during("reading the campaign", work)?;
     let mut notes = raw.words(FindingSeverity::Note);
     let mut doubts = raw.words(FindingSeverity::Doubt);
-    let total = raw.runs.len();
-    let processed = progress.counting("processing", |on_done| {
-        process(&raw, &options, &|done| on_done(done, total))
-    });
+    let processed = progress.counting("processing", |on_done| process(&raw, &options, on_done));
     let processed = processed.map_err(|e| e.in_file(&args.campaign))?;
     doubts.extend(processed.report.doubts());
     notes.extend(processed.report.warnings());
