@@ -30,15 +30,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!(
         "{}: output off by {:.1} %, transfer function by at most {:.1} % in the trained band",
-        results.model.label,
+        results.model.model,
         100.0 * results.validation_error,
-        100.0 * results.model.worst_in_band,
+        100.0 * results.worst_in_band(&results.model),
     );
     for trial in results.by_alpha.iter().chain(&results.by_order) {
         println!(
             "  {:<12} at most {:5.1} %",
-            trial.label,
-            100.0 * trial.worst_in_band
+            trial.model,
+            100.0 * results.worst_in_band(trial)
         );
     }
     Ok(())

@@ -12,7 +12,7 @@ mod models;
 mod user_case;
 
 pub(crate) use first_order::{ALPHA, ALPHA_OF_ORDERS, FILTERS, STEP_S, VALIDATION_HZ};
-pub use first_order::{FirstOrderResults, SampledTransfer, first_order_example};
+pub use first_order::{FirstOrderResults, first_order_example};
 pub use laguerre_functions::{Lines, OF_THE_DECKS, laguerre_functions};
 pub(crate) use user_case::UserCase;
 

@@ -95,7 +95,7 @@ fn answers_from_tables(folder: &Path, source: &str, section: &SectionModel) -> F
     study.models.retain(|m| m.table.is_some());
     let deck = Deck::load(&study).unwrap();
     let records = RecordSet::none();
-    let train = |m| train_one(&study, m, &deck, &records, &|_| ()).unwrap();
+    let train = |m| train_one(&study, m, &deck, &records, &|_, _| ()).unwrap();
     let models: Vec<_> = study.models.iter().map(|m| train(m).model).collect();
     let results = flutter_study(&study, &deck, &models).unwrap();
     let case = format!("{source}, {} m", section.width_m);

@@ -185,8 +185,8 @@ fn a_known_bias_leaves_no_bare_interval() {
         .unwrap();
     let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
     let fit = DiscreteFit::default();
-    let Fitted { model, report } = fit_discrete(&sources, &fit, &|_| ()).unwrap();
-    let estimate = discrete_uncertainty(&sources, &fit, &model, None, &|_| ()).unwrap();
+    let Fitted { model, report } = fit_discrete(&sources, &fit, &|_, _| ()).unwrap();
+    let estimate = discrete_uncertainty(&sources, &fit, &model, None, &|_, _| ()).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::with_model(&structure, &model).unwrap();
     let search = OnsetSearch::default();

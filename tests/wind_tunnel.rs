@@ -21,7 +21,7 @@ fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
 /// Onset of the Table 4.1 section with the default Laguerre model of the records, m/s.
 fn onset_m_s(records: &[Record]) -> f64 {
     let Fitted { model, report } =
-        fit_records(&sources(records), &TimeFit::default(), &|_| {}).unwrap();
+        fit_records(&sources(records), &TimeFit::default(), &|_, _| {}).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::new(structure, model.realize()).unwrap();
     let search = OnsetSearch {
@@ -97,7 +97,7 @@ fn measure(name: &str, seed: u64) -> (f64, f64) {
         plan.from_table(&embedded::deck(name).unwrap(), &Dof::TWO)
             .unwrap()
     };
-    let processed = process(&made.raw, &ProcessingOptions::default(), &|_| {}).unwrap();
+    let processed = process(&made.raw, &ProcessingOptions::default(), &|_, _| {}).unwrap();
     let found =
         identify_derivatives(&sources(&processed.records), &DerivativeOptions::default()).unwrap();
     let errors = errors(&made, &found);
@@ -154,7 +154,7 @@ fn shares_of_the_deviation_of_the_onset() {
         let clean = onset_m_s(&plan.tunnel.records_from_table(&table, &Dof::TWO).unwrap());
         let quiet = plan.from_table(&table, &Dof::TWO).unwrap();
         let with = |options: &ProcessingOptions| {
-            onset_m_s(&process(&quiet.raw, options, &|_| {}).unwrap().records)
+            onset_m_s(&process(&quiet.raw, options, &|_, _| {}).unwrap().records)
         };
         let mut options = ProcessingOptions::default();
         let processed = with(&options);
@@ -188,7 +188,7 @@ fn drift_of_the_cells_leaves_drag_due_to_rotation_and_its_errors() {
         plan.tunnel.seed = seed;
         plan.disturbances.drift_n = drift_n;
         let made = plan.from_table(&table, &Dof::THREE).unwrap();
-        let processed = process(&made.raw, &ProcessingOptions::default(), &|_| {}).unwrap();
+        let processed = process(&made.raw, &ProcessingOptions::default(), &|_, _| {}).unwrap();
         identify_derivatives(&sources(&processed.records), &DerivativeOptions::default()).unwrap()
     };
     use aerodeck::aerodynamics::derivatives::Derivative;

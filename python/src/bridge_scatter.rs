@@ -2,7 +2,8 @@
 
 use crate::convert::{Parts, parts};
 use crate::error::wrong;
-use aerodeck::study::bridge::{DerivativeScatter, ScatteredOnset};
+use aerodeck::study::bridge::DerivativeScatter;
+use aerodeck::uncertainty::SampledOnsets;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -38,8 +39,7 @@ pub struct BridgeScatter {
 }
 
 impl BridgeScatter {
-    pub fn new(py: Python<'_>, found: &ScatteredOnset) -> Self {
-        let onsets = &found.onsets;
+    pub fn new(py: Python<'_>, onsets: &SampledOnsets) -> Self {
         Self {
             speeds_m_s: PyArray1::from_slice(py, &onsets.speeds_m_s).unbind(),
             mean_m_s: onsets.mean_m_s,

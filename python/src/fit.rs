@@ -143,10 +143,7 @@ fn to_table(
 }
 
 fn to_records(py: Python<'_>, records: &Records, fit: &TimeFit, work: &Work) -> PyResult<Model> {
-    let progress = |p: aerodeck::identification::FitProgress| {
-        let done = (p.pass - 1) * p.records + p.records_done;
-        work.tell(done, p.passes * p.records);
-    };
+    let progress = |done, total| work.tell(done, total);
     let found = work.run(py, || {
         let sources = records.sources();
         let header = sources.first().map(|r| r.header());

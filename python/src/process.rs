@@ -80,8 +80,7 @@ pub fn process(
         let raw = Campaign::read(&campaign)?.load()?;
         let warnings = raw.words(FindingSeverity::Note);
         let mut doubts = raw.words(FindingSeverity::Doubt);
-        let runs = raw.runs.len();
-        let processed = processing::process(&raw, &options, &|done| work.tell(done, runs))?;
+        let processed = processing::process(&raw, &options, &|done, all| work.tell(done, all))?;
         let sources: Vec<&dyn RecordSource> = processed
             .records
             .iter()

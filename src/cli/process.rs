@@ -81,10 +81,7 @@ pub(crate) fn run(args: &ProcessArgs, progress: &Progress) -> Result<Answer> {
     let raw = progress.during("reading the campaign", work)?;
     let mut notes = raw.words(FindingSeverity::Note);
     let mut doubts = raw.words(FindingSeverity::Doubt);
-    let total = raw.runs.len();
-    let processed = progress.counting("processing", |on_done| {
-        process(&raw, &options, &|done| on_done(done, total))
-    });
+    let processed = progress.counting("processing", |on_done| process(&raw, &options, on_done));
     let processed = processed.map_err(|e| e.in_file(&args.campaign))?;
     doubts.extend(processed.report.doubts());
     notes.extend(processed.report.warnings());
@@ -216,15 +213,16 @@ fn derivatives(
 
 /// A figure of the stages of every run.
 fn draw_stages(processed: &Processed, out: &mut OutputDir, progress: &Progress) -> Result<()> {
-    let stage = progress.steps("figures");
     let count = processed.stages.len();
     let runs = processed.report.runs.iter().zip(&processed.stages);
-    for ((run, stages), done) in runs.zip(1..) {
-        let stem = format!("processing/{}", file_name(&run.run));
-        figures::write(&stem, out, || processing_figure(run, stages))?;
-        stage.at(done, count);
-    }
-    Ok(())
+    progress.counting("figures", |on_done| {
+        for ((run, stages), done) in runs.zip(1..) {
+            let stem = format!("processing/{}", file_name(&run.run));
+            figures::write(&stem, out, || processing_figure(run, stages))?;
+            on_done(done, count);
+        }
+        Ok(())
+    })
 }
 
 /// The derivatives with all that is known of them, and their figure.

@@ -17,19 +17,12 @@ impl Progress {
         Self { shown, verbose }
     }
 
-    /// A stage of unknown length; ends when the returned bar is dropped.
-    pub(crate) fn stage(&self, what: &str) -> Stage {
+    /// A stage of unknown length; ends, and is cleared, when the returned bar is dropped.
+    pub(crate) fn stage(&self, what: &str) -> ProgressBar {
         let bar = self.bar(ProgressBar::new_spinner(), "{spinner} {msg} {elapsed}");
         bar.set_message(what.to_owned());
         bar.enable_steady_tick(Duration::from_millis(100));
-        Stage(bar)
-    }
-
-    /// A stage that counts; see [`Stage::at`].
-    pub(crate) fn steps(&self, what: &str) -> Stage {
-        let bar = self.bar(ProgressBar::new(1), "{msg} [{bar:30}] {pos}/{len} {eta}");
-        bar.set_message(what.to_owned());
-        Stage(bar)
+        bar
     }
 
     /// What `work` comes to, with this stage shown as long as it lasts.
@@ -40,8 +33,12 @@ impl Progress {
 
     /// The same of work that says how many of how many steps are done.
     pub(crate) fn counting<T>(&self, what: &str, work: impl FnOnce(OnDone<'_>) -> T) -> T {
-        let stage = self.steps(what);
-        work(&|done, total| stage.at(done, total))
+        let bar = self.bar(ProgressBar::new(1), "{msg} [{bar:30}] {pos}/{len} {eta}");
+        bar.set_message(what.to_owned());
+        work(&|done, total| {
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        })
     }
 
     fn bar(&self, bar: ProgressBar, template: &str) -> ProgressBar {
@@ -52,22 +49,5 @@ impl Progress {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
         }
-    }
-}
-
-/// A stage under way.
-pub(crate) struct Stage(ProgressBar);
-
-impl Stage {
-    /// `done` of `total` steps are done.
-    pub(crate) fn at(&self, done: usize, total: usize) {
-        self.0.set_length(total as u64);
-        self.0.set_position(done as u64);
-    }
-}
-
-impl Drop for Stage {
-    fn drop(&mut self) {
-        self.0.finish_and_clear();
     }
 }

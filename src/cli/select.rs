@@ -144,16 +144,11 @@ fn judge(
 ) -> Result<(Grid, Selection)> {
     let axis = axis(choice, study, records)?;
     let grid = progress.counting("fitting the grid", |on_done| {
-        Grid::new(records, axis, choice.filters, &|p| {
-            on_done(p.records_done, p.records);
-        })
+        Grid::new(records, axis, choice.filters, on_done)
     })?;
     let (structure, search) = (study.section.structure()?, study.speeds().search());
-    let total = grid.values().len();
     let mut selection = progress.counting("judging the cells", |on_done| {
-        select(&grid, &structure, &search, &|done| {
-            on_done(done, total);
-        })
+        select(&grid, &structure, &search, on_done)
     })?;
     let own = deck.table();
     let own = own.map(|_| deck.own_onset(&structure, search.speed_max_m_s));

@@ -13,7 +13,6 @@ use crate::files::toml_lines::of_a_kind_of_ours;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::package;
-use crate::identification;
 use crate::study::{
     Deck, FITS, KnownUncertainty, RecordSet, TrainedWithReport, UNCERTAINTY, flutter_study,
     interval_of, is_of_a_file, state_intervals, train_one,
@@ -113,18 +112,9 @@ impl<'a> Stages<'a> {
                 failed.push(StageFailure::new(stage, reason));
                 continue;
             }
-            let stage = progress.steps(&format!("training {}", block.name));
-            let result = train_one(
-                study,
-                block,
-                deck,
-                records.unwrap_or(&none),
-                &|p: identification::FitProgress| {
-                    let total = p.passes * p.records;
-                    let done = (p.pass - 1) * p.records + p.records_done;
-                    stage.at(done, total);
-                },
-            );
+            let result = progress.counting(&format!("training {}", block.name), |on_done| {
+                train_one(study, block, deck, records.unwrap_or(&none), on_done)
+            });
             let result = match result {
                 Ok(result) => result,
                 Err(e) if is_of_a_file(&e) => return Err(e),
@@ -144,7 +134,6 @@ impl<'a> Stages<'a> {
                 out.write(name, json)?;
             }
             trained.push(result);
-            drop(stage);
         }
         leave_fingerprint(deck, out)?;
         match first_error {

@@ -143,7 +143,7 @@ fn parameters(records: &[&dyn RecordSource], progress: &Progress) -> Result<Page
     let stage = progress.stage("parameters of the discrete model");
     let alphas: Vec<f64> = (0..20).map(|i| 0.2 + 0.04 * f64::from(i)).collect();
     let axis = GridAxis::Discrete(alphas.clone(), TimeWeights::None);
-    let grid = Grid::new(records, axis, FILTERS, &|_| {})?;
+    let grid = Grid::new(records, axis, FILTERS, &|_, _| {})?;
     let mut figures = Vec::new();
     for metrics in metric_grid(&grid, records, FREQUENCY_HZ)? {
         let number = match metrics.motion {
@@ -188,7 +188,7 @@ fn first_order(progress: &Progress) -> Result<PageSection> {
         text: vec![format!(
             "Predicted output off by {:.1} %, transfer function by at most {:.1} % in the trained band.",
             100.0 * results.validation_error,
-            100.0 * results.model.worst_in_band
+            100.0 * results.worst_in_band(&results.model)
         )],
         header: "number | thesis | here",
         rows: rows

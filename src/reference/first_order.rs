@@ -7,14 +7,14 @@
 
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::laguerre::{alpha_lower_bound, discrete_memory, impulse_response};
-use crate::error::{Error, Result};
+use crate::comparison::forces::PerModel;
+use crate::error::Result;
 use crate::identification::{DiscreteFit, StaticTerm, fit_discrete};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordHeader, predicted_forces};
 use nalgebra::Complex;
-use serde::Serialize;
 use std::f64::consts::TAU;
 
 // the numbers that the thesis prints; it does not print how long each frequency lasts, nor which other `α` its figure shows
@@ -41,19 +41,11 @@ pub(crate) const ALPHA_OF_ORDERS: f64 = 0.889;
 /// Memory on which the upper bound of `α` rests, samples, and the order of the highest filter (2.37).
 const MEMORY: (usize, usize) = (176, 3);
 
-/// A transfer function over frequency.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SampledTransfer {
-    /// What it belongs to.
-    pub label: String,
-    /// Frequency, Hz, magnitude, and phase, degrees.
-    pub points: Vec<(f64, f64, f64)>,
-    /// Largest error relative to the system between the lowest and highest training frequency.
-    pub worst_in_band: f64,
-}
+/// A transfer function: frequency, Hz, magnitude, and phase, degrees.
+type SampledTransfer = PerModel<(f64, f64, f64)>;
 
 /// Everything that Figures 2.6 to 2.11 show.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FirstOrderResults {
     /// Training input and output, one per step (Figure 2.6).
     pub training: [Vec<f64>; 2],
@@ -94,8 +86,8 @@ pub fn first_order_example() -> Result<FirstOrderResults> {
     let sample = |label: String, model: &Model| {
         let g = frequencies_hz.iter();
         let g = g.map(|f| Ok(model.transfer(ReducedFrequency::from_full_width(TAU * f))?[(0, 0)]));
-        let g = g.collect::<Result<Vec<_>>>()?;
-        Ok::<_, Error>(sampled(label, &frequencies_hz, &g, &system))
+        let g = g.collect::<Result<Vec<_>>>();
+        g.map(|g| sampled(label, &frequencies_hz, &g))
     };
     let trial = |label: String, filters, alpha| sample(label, &train(&training, filters, alpha)?);
     let shown = sine(VALIDATION_HZ, 5.0 / VALIDATION_HZ);
@@ -124,8 +116,8 @@ pub fn first_order_example() -> Result<FirstOrderResults> {
             alpha_upper_bound(order + 1, samples),
         ),
         last_value: last[(order, samples)].abs(),
-        tustin: sampled("Tustin".into(), &frequencies_hz, &tustin, &system),
-        system: sampled("system".into(), &frequencies_hz, &system, &system),
+        tustin: sampled("Tustin".into(), &frequencies_hz, &tustin),
+        system: sampled("system".into(), &frequencies_hz, &system),
         training: [input, training.force[0].clone()],
         coefficients,
     })
@@ -189,7 +181,7 @@ fn train(training: &Record, filters: usize, alpha: f64) -> Result<Model> {
         static_term: StaticTerm::None,
         ..DiscreteFit::default()
     };
-    Ok(fit_discrete(&[training], &fit, &|_| ())?.model)
+    Ok(fit_discrete(&[training], &fit, &|_, _| ())?.model)
 }
 
 /// (2.27) at `s = iω`.
@@ -208,23 +200,23 @@ fn tustin(frequencies_hz: &[f64]) -> Vec<Complex<f64>> {
     frequencies_hz.iter().map(at).collect()
 }
 
-fn sampled(
-    label: String,
-    frequencies_hz: &[f64],
-    g: &[Complex<f64>],
-    system: &[Complex<f64>],
-) -> SampledTransfer {
-    let lowest = TRAINING_HZ.into_iter().fold(f64::INFINITY, f64::min);
-    let band = lowest * (1.0 - 1e-9)..=highest_hz() * (1.0 + 1e-9);
-    let all = frequencies_hz.iter().zip(g.iter().zip(system));
-    let inside = all.filter(|(f, _)| band.contains(*f));
-    let errors = inside.map(|(_, (g, h))| (g - h).norm() / h.norm());
+fn sampled(model: String, frequencies_hz: &[f64], g: &[Complex<f64>]) -> SampledTransfer {
     let values = frequencies_hz.iter().zip(g);
     let points = values.map(|(f, z)| (*f, z.norm(), z.arg().to_degrees()));
-    SampledTransfer {
-        label,
-        points: points.collect(),
-        worst_in_band: errors.fold(0.0, f64::max),
+    let points = points.collect();
+    PerModel { model, points }
+}
+
+impl FirstOrderResults {
+    /// Largest error of a transfer function relative to the system between the lowest and highest training frequency.
+    pub fn worst_in_band(&self, of: &SampledTransfer) -> f64 {
+        let lowest = TRAINING_HZ.into_iter().fold(f64::INFINITY, f64::min);
+        let band = lowest * (1.0 - 1e-9)..=highest_hz() * (1.0 + 1e-9);
+        let value = |p: &(f64, f64, f64)| Complex::from_polar(p.1, p.2.to_radians());
+        let all = of.points.iter().zip(&self.system.points);
+        let inside = all.filter(|(p, _)| band.contains(&p.0));
+        let errors = inside.map(|(g, h)| (value(g) - value(h)).norm() / h.1);
+        errors.fold(0.0, f64::max)
     }
 }
 
@@ -285,7 +277,7 @@ mod tests {
         assert!(memory as f64 * STEP_S < REST_S);
         let error = |label: &str| {
             let mut trials = results.by_alpha.iter().chain(&results.by_order);
-            trials.find(|t| t.label == label).unwrap().worst_in_band
+            results.worst_in_band(trials.find(|t| t.model == label).unwrap())
         };
         // "quite well reconstructed … some differences on the peaks"
         assert!(
@@ -293,7 +285,7 @@ mod tests {
             "{}",
             results.validation_error
         );
-        assert!((results.model.worst_in_band - error("α = 0.85")).abs() < 1e-12);
+        assert!((results.worst_in_band(&results.model) - error("α = 0.85")).abs() < 1e-12);
         // below the lower bound the approximation is bad, within the bounds it improves towards the upper one
         for (worse, better) in [
             ("α = 0.5", "α = 0.7"),

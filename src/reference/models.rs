@@ -99,7 +99,7 @@ fn discrete_onset(records: &[Record], filters: usize) -> Result<Onset> {
         filters,
         ..DiscreteFit::default()
     };
-    let Fitted { model, report } = fit_discrete(&sources(records), &fit, &|_| {})?;
+    let Fitted { model, report } = fit_discrete(&sources(records), &fit, &|_, _| {})?;
     onset_of_records(&model, report.tested_range)
 }
 
@@ -154,7 +154,8 @@ pub(super) fn random_motion() -> Result<Vec<f64>> {
         ..TunnelPlan::default()
     };
     let records = plan.records_from_model(&WITHOUT_ROTARY, "flat plate", 0.5)?;
-    let Fitted { model, report } = fit_records(&sources(&records), &TimeFit::default(), &|_| {})?;
+    let Fitted { model, report } =
+        fit_records(&sources(&records), &TimeFit::default(), &|_, _| {})?;
     let trained = onset_of(&section, &model, 120.0, Some(report.tested_range))?;
     Ok(vec![
         reduced(exact.at.speed_m_s),
@@ -175,7 +176,7 @@ pub(super) fn laguerre_flat_plate() -> Result<Vec<f64>> {
         constraints: Constraints::None,
         ..TimeFit::default()
     };
-    let Fitted { model, report } = fit_records(&sources(&records), &fit, &|_| {})?;
+    let Fitted { model, report } = fit_records(&sources(&records), &fit, &|_, _| {})?;
     let onset = onset_of_records(&model, report.tested_range)?;
     Ok(vec![onset.at.speed_m_s])
 }

@@ -5,8 +5,7 @@ use super::transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
 use super::vocabulary::{Figure, PlottedSeries};
 use crate::error::Result;
 use crate::reference::{
-    ALPHA, ALPHA_OF_ORDERS, FILTERS, FirstOrderResults, Lines, STEP_S, SampledTransfer,
-    VALIDATION_HZ,
+    ALPHA, ALPHA_OF_ORDERS, FILTERS, FirstOrderResults, Lines, STEP_S, VALIDATION_HZ,
 };
 
 const TIME: &str = "Dimensionless time τ";
@@ -81,19 +80,15 @@ pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static 
 }
 
 fn transfer<'a>(
-    system: &SampledTransfer,
+    system: &TransferCurve,
     parameters: &str,
-    models: impl IntoIterator<Item = &'a SampledTransfer>,
+    models: impl IntoIterator<Item = &'a TransferCurve>,
 ) -> Result<Figure> {
-    let curve = |t: &SampledTransfer| TransferCurve {
-        model: t.label.clone(),
-        points: t.points.clone(),
-    };
     let plot = TransferPlot {
         name: "1/(τs + 1)".into(),
-        reference: curve(system),
+        reference: system.clone(),
         tolerance: None,
-        models: models.into_iter().map(curve).collect(),
+        models: models.into_iter().cloned().collect(),
     };
     transfer_figure(&format!("Transfer functions, {parameters}"), &[plot])
 }

@@ -21,7 +21,7 @@ pub use forces::SectionForceModels;
 pub(crate) use forces::block_table;
 pub use motion::{BridgeMotion, ModeShare, NodeMotion, motion_at_onset, static_deflection};
 pub use parts::SectionForcePart;
-pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
+pub use scatter::{DerivativeScatter, Scatter};
 pub use similarity::{Similarity, equivalent_section, similarities};
 
 use super::KnownUncertainty;

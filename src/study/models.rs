@@ -4,7 +4,8 @@ use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, MovedOnset, StableRange, divergence_with_forces, find_onset};
-use crate::identification::{FitReport, Fitted, OnProgress};
+use crate::identification::{FitReport, Fitted};
+use crate::numbered::OnDone;
 use crate::trained_model::{Provenance, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, FormEnsemble, ModelOfData, ModelUncertainty};
 
@@ -28,7 +29,7 @@ pub fn train_one(
     block: &ModelBlock,
     deck: &Deck,
     records: &RecordSet,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
 ) -> Result<TrainedWithReport> {
     let ModelOfData {
         fitted: Fitted { model, mut report },
@@ -98,7 +99,7 @@ fn fit(
     block: &ModelBlock,
     deck: &Deck,
     records: &RecordSet,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
 ) -> Result<ModelOfData> {
     let own = block.speed_groups.as_deref();
     let groups = own.or(study.deck.speed_groups.as_deref());

@@ -3,8 +3,8 @@
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted};
 use crate::flutter::{
-    CriticalPoint, FlutterSearch, ModeRatio, Onset, OnsetInterval, OnsetMethod, OnsetSearch,
-    StableRange, UnstableStart, judged_speeds,
+    CriticalPoint, FlutterSearch, Onset, OnsetInterval, OnsetMethod, OnsetSearch, StableRange,
+    UnstableStart, judged_speeds,
 };
 use crate::fmu::importer::{
     Fmu, GrowthOnset as Found, GrowthPoint, SteppedSearch, growth_by_stepping, onset_by_stepping,
@@ -191,10 +191,7 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
     let k = point.reduced_frequency;
     Onset {
         at: point,
-        mode: found.mode_ratio.map(|mode_ratio| ModeRatio {
-            mode_ratio,
-            phase_deg: found.phase_deg,
-        }),
+        mode: found.mode,
         damping_slope_s_m: None,
         branch: "dominant".to_owned(),
         in_tested_range: Some(model.tested_range.contains(k)),
@@ -231,8 +228,7 @@ mod tests {
         let found = Found {
             speed_m_s: 21.5,
             frequency_hz: 0.0,
-            mode_ratio: None,
-            phase_deg: 0.0,
+            mode: None,
             communication_step_s: 0.01,
             lowest_m_s: 9.0,
             steps: 1000,

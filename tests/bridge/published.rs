@@ -322,8 +322,8 @@ fn scatter_follows_the_onset() {
         seed: 1,
     };
     let still = study.scattered_onset(&found, &none, &|_, _| ()).unwrap();
-    near(still.onsets.mean_m_s / found.at.speed_m_s, 1.0, 1e-8);
-    assert!(still.onsets.standard_deviation_m_s < 1e-6 * still.onsets.mean_m_s);
+    near(still.mean_m_s / found.at.speed_m_s, 1.0, 1e-8);
+    assert!(still.standard_deviation_m_s < 1e-6 * still.mean_m_s);
     let some = Scatter {
         frequency: 0.01,
         damping: 0.2,
@@ -337,9 +337,9 @@ fn scatter_follows_the_onset() {
         study.scattered_onset(&found, &some, &|_, _| ()).unwrap()
     );
     println!("{scattered:?}");
-    assert_eq!(scattered.onsets.without_onset, 0);
-    near(scattered.onsets.mean_m_s / found.at.speed_m_s, 1.0, 0.03);
-    let relative = scattered.onsets.standard_deviation_m_s / scattered.onsets.mean_m_s;
+    assert_eq!(scattered.without_onset, 0);
+    near(scattered.mean_m_s / found.at.speed_m_s, 1.0, 0.03);
+    let relative = scattered.standard_deviation_m_s / scattered.mean_m_s;
     assert!((0.005..0.1).contains(&relative), "{relative}");
     // one bridge of another damping, found by search and from nearby
     let mut other = study.by_model.clone();
@@ -378,13 +378,13 @@ fn scatter_as_measured_is_the_interval() {
     );
     // the deviation of Student's t
     let of_students = (degrees_of_freedom / (degrees_of_freedom - 2.0)).sqrt();
-    assert_eq!(scattered.onsets.without_onset, 0);
+    assert_eq!(scattered.without_onset, 0);
     // 400 samples know a standard deviation to 3.5 %, a mean to a twentieth of it; the rest is the curvature
     near(
-        scattered.onsets.standard_deviation_m_s / (standard_error_m_s * of_students),
+        scattered.standard_deviation_m_s / (standard_error_m_s * of_students),
         1.0,
         0.12,
     );
-    let shift = (scattered.onsets.mean_m_s - found.at.speed_m_s) / standard_error_m_s;
+    let shift = (scattered.mean_m_s - found.at.speed_m_s) / standard_error_m_s;
     near(shift, 0.0, 0.2);
 }

@@ -113,6 +113,7 @@ fn onset_by_stepping_is_onset_by_eigenvalues() {
             };
             let off = |a: f64, b: f64| (a / b - 1.0).abs();
             let message = format!("{kind} at {step} s: {found:#?} against {expected:#?}");
+            let [mode, expected_mode] = [found.mode, expected.mode].map(Option::unwrap);
             assert!(
                 off(found.speed_m_s, expected.at.speed_m_s) < tolerance,
                 "{message}"
@@ -122,11 +123,11 @@ fn onset_by_stepping_is_onset_by_eigenvalues() {
                 "{message}"
             );
             assert!(
-                off(found.mode_ratio.unwrap(), expected.mode.unwrap().mode_ratio) < 1e-3,
+                off(mode.mode_ratio, expected_mode.mode_ratio) < 1e-3,
                 "{message}"
             );
             assert!(
-                (found.phase_deg - expected.mode.unwrap().phase_deg).abs() < 0.1,
+                (mode.phase_deg - expected_mode.phase_deg).abs() < 0.1,
                 "{message}"
             );
         }

@@ -51,7 +51,7 @@ fn nothing_grows_below_the_onset_by_records() {
                 .records_from_table(&table, dofs)
                 .unwrap();
             let fit = TimeFit::default();
-            let model = fit_records(&sources(&records), &fit, &|_| ())
+            let model = fit_records(&sources(&records), &fit, &|_, _| ())
                 .unwrap()
                 .model;
             for named in &sections {

@@ -111,7 +111,8 @@ fn nothing_grows_below_the_onset_with_models_from_records() {
                 form,
                 ..TimeFit::default()
             };
-            let Fitted { model, report } = fit_records(&sources(&records), &fit, &|_| ()).unwrap();
+            let Fitted { model, report } =
+                fit_records(&sources(&records), &fit, &|_, _| ()).unwrap();
             for named in &sections {
                 assert_stable_below_onset(&format!("{name}, {}", report.method), &model, named);
             }
@@ -119,7 +120,7 @@ fn nothing_grows_below_the_onset_with_models_from_records() {
             assert!(!constraints.sentences.is_empty());
             assert_eq!(constraints.costs.len(), dofs.len() * dofs.len());
             let known =
-                record_uncertainty(&sources(&records), &fit, &report, None, &|_| ()).unwrap();
+                record_uncertainty(&sources(&records), &fit, &report, None, &|_, _| ()).unwrap();
             assert_held_numbers_are_known(&known, dofs);
         }
     }
@@ -193,7 +194,7 @@ fn quasi_steady_limits_of_laguerre_models_are_met() {
             ..TimeFit::default()
         };
         let of_table = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &in_frequency).unwrap();
-        let of_records = fit_records(&sources(&records), &in_time, &|_| ()).unwrap();
+        let of_records = fit_records(&sources(&records), &in_time, &|_, _| ()).unwrap();
         let told = of_records.report.constraints.unwrap().sentences.join("\n");
         let stated = "of the vertical force due to torsion motion at K → 0 is 4.2000 as stated: the data alone";
         assert!(told.contains(stated), "{told}");
@@ -234,7 +235,7 @@ fn least_squares_alone_are_what_they_were() {
         constraints: Constraints::None,
         ..TimeFit::default()
     };
-    let from_records = fit_records(&sources(&records), &in_time, &|_| ())
+    let from_records = fit_records(&sources(&records), &in_time, &|_, _| ())
         .unwrap()
         .report;
     let from_table = fitted(&table, &Dof::TWO, &rational(1), Constraints::None).report;
@@ -283,7 +284,7 @@ fn what_the_constraints_cost_in_time() {
                 ..TimeFit::default()
             };
             let start = std::time::Instant::now();
-            fit_records(&sources(&records), &fit, &|_| ()).unwrap();
+            fit_records(&sources(&records), &fit, &|_, _| ()).unwrap();
             start.elapsed().as_secs_f64()
         };
         let mut ratios: Vec<f64> = (0..5)

@@ -34,7 +34,7 @@ pub(crate) fn short_record() -> Job {
     let records = records(&plan, "LN21-5200");
     let fit = TimeFit::default();
     Job::new(move || {
-        let fitted = fit_records(&sources(&records), &fit, &|_| ());
+        let fitted = fit_records(&sources(&records), &fit, &|_, _| ());
         black_box(fitted.expect("a fit").model);
     })
 }
@@ -50,7 +50,7 @@ pub(crate) fn training() -> Job {
         ..TimeFit::default()
     };
     Job::new(move || {
-        let fitted = fit_records(&sources(&records), &fit, &|_| ());
+        let fitted = fit_records(&sources(&records), &fit, &|_, _| ());
         black_box(fitted.expect("a fit").model);
     })
 }
@@ -113,7 +113,7 @@ fn continuous_axis() -> GridAxis {
 /// All models of the grid with their residuals.
 fn grid(axis: GridAxis) -> Job {
     finding(full_set(), move |records| {
-        let grid = Grid::new(&sources(records), axis.clone(), FILTERS, &|_| ())?;
+        let grid = Grid::new(&sources(records), axis.clone(), FILTERS, &|_, _| ())?;
         let fits = |value| grid.fits(value, &|_| true);
         Ok((0..VALUES).into_par_iter().map(fits).collect::<Vec<_>>())
     })
@@ -145,13 +145,14 @@ pub(crate) fn grid_continuous_argument() -> Value {
 /// Data left out, onsets and guards of all cells of the continuous grid.
 pub(crate) fn judging() -> Job {
     let records = full_set();
-    let grid = Grid::new(&sources(&records), continuous_axis(), FILTERS, &|_| ()).expect("a grid");
+    let grid =
+        Grid::new(&sources(&records), continuous_axis(), FILTERS, &|_, _| ()).expect("a grid");
     let structure = SectionModel::table_4_1().structure().expect("a structure");
     let search = OnsetSearch {
         speed_max_m_s: 60.0,
         speeds: 120,
     };
     Job::new(move || {
-        black_box(select(&grid, &structure, &search, &|_| ()).expect("a selection"));
+        black_box(select(&grid, &structure, &search, &|_, _| ()).expect("a selection"));
     })
 }

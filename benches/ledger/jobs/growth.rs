@@ -107,7 +107,7 @@ pub(crate) fn training(samples: u64) -> Job {
     };
     finding(records, move |records| {
         let records = records.each_ref().map(|r| r as &dyn RecordSource);
-        fit_records(&records, &fit, &|_| ())
+        fit_records(&records, &fit, &|_, _| ())
     })
 }
 
@@ -120,7 +120,7 @@ pub(crate) fn monte_carlo(samples: u64) -> Job {
 pub(crate) fn training_by_threads(_: u64) -> Job {
     let records = super::models::full_set();
     finding(records, |records| {
-        fit_records(&sources(records), &TimeFit::default(), &|_| ())
+        fit_records(&sources(records), &TimeFit::default(), &|_, _| ())
     })
 }
 

@@ -48,4 +48,3 @@ pub use report::{
     StaticReport,
 };
 pub use samples::sample_model;
-pub use time::pass::{FitProgress, OnProgress};

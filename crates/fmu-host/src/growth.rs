@@ -13,7 +13,7 @@ use super::description::{Value, VariableType};
 use super::simulation::{Times, start};
 use super::slave::{Slave, find};
 use crate::error::{Error, Result, ensure, positive};
-use crate::flutter::StableRange;
+use crate::flutter::{ModeRatio, StableRange};
 use std::f64::consts::TAU;
 
 /// Names of displacement and rate of the motions that a section may have.
@@ -51,10 +51,8 @@ pub struct GrowthOnset {
     pub speed_m_s: f64,
     /// Frequency there, Hz.
     pub frequency_hz: f64,
-    /// `|y|/(B|θ|)`, if the FMU has a variable `width`.
-    pub mode_ratio: Option<f64>,
-    /// Phase of `y` relative to `θ`, degrees in (−180, 180].
-    pub phase_deg: f64,
+    /// Heave over rotation, if the FMU has both and a variable `width`.
+    pub mode: Option<ModeRatio>,
     /// Communication step, s.
     pub communication_step_s: f64,
     /// The lowest speed that was run, m/s.
@@ -326,8 +324,10 @@ impl Run {
         Ok(SteppedSearch::Onset(Box::new(GrowthOnset {
             speed_m_s: growth.speed_m_s,
             frequency_hz: growth.frequency_hz(),
-            mode_ratio: relative.zip(width).map(|(r, b)| r.norm() / b),
-            phase_deg: relative.map_or(0.0, |r| r.arg().to_degrees()),
+            mode: relative.zip(width).map(|(ratio, width)| ModeRatio {
+                mode_ratio: ratio.norm() / width,
+                phase_deg: ratio.arg().to_degrees(),
+            }),
             communication_step_s: self.step,
             lowest_m_s: self.lowest_m_s,
             steps: self.steps,

@@ -94,20 +94,20 @@ fn responses(
     speeds: &[f64],
     progress: &Progress,
 ) -> Result<(Vec<BridgeBuffeting>, Vec<String>)> {
-    let stage = progress.steps("records of turbulence");
     let mut all = Vec::with_capacity(speeds.len());
     let mut unstable = Vec::new();
-    for (i, speed) in speeds.iter().enumerate() {
-        let found = study.buffeting(block, *speed, &|done, of| {
-            stage.at(i * of + done, speeds.len() * of);
-        });
-        match found {
-            Ok(found) => all.push(found),
-            // what the others say holds without it
-            Err(Error::Unstable(why)) => unstable.push(why),
-            Err(e) => return Err(e),
+    progress.counting("records of turbulence", |on_done| {
+        for (i, speed) in speeds.iter().enumerate() {
+            let told = |done, of| on_done(i * of + done, speeds.len() * of);
+            match study.buffeting(block, *speed, &told) {
+                Ok(found) => all.push(found),
+                // what the others say holds without it
+                Err(Error::Unstable(why)) => unstable.push(why),
+                Err(e) => return Err(e),
+            }
         }
-    }
+        Ok(())
+    })?;
     match all.is_empty() {
         true => Err(Error::Unstable(unstable.swap_remove(0))),
         false => Ok((all, unstable)),

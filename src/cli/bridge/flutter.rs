@@ -21,8 +21,9 @@ use crate::report::{
 };
 use crate::study::bridge::BridgeMotion;
 use crate::study::bridge::{
-    BridgeFlutter, DerivativeScatter, Scatter, ScatteredOnset, block_table, bridge_flutter,
+    BridgeFlutter, DerivativeScatter, Scatter, block_table, bridge_flutter,
 };
+use crate::uncertainty::SampledOnsets;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -84,8 +85,8 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
     let mut text = text::text(&study, &results, &verdict, progress.verbose);
     let no_onset = args.samples.filter(|_| results.onset().is_none());
     let no_onset = no_onset.map(|_| "Scatter: none, the models have no onset".to_owned());
-    let scatter = scattered.as_ref().map(scatter_line).or(no_onset);
-    text.extend(scatter.iter().map(|line| format!("{line}\n")));
+    let line = scattered.as_ref().map(scatter_line).or(no_onset);
+    text.extend(line.iter().map(|line| format!("{line}\n")));
     let inputs = leave_inputs(&args.bridge.bridge, &study.file, &mut out)?;
     text.extend(failed.iter().map(|failed| format!("failed: {failed}\n")));
     if is_of_a_study(&out.target(SUMMARY)) {
@@ -98,12 +99,15 @@ pub(super) fn run(args: &BridgeFlutterArgs, progress: &Progress) -> Result<Answe
             failed: failed.clone(),
             ..BridgeSummary::new(&study, &results, &verdict)?
         };
-        summary.comparisons.extend(scatter);
+        summary.comparisons.extend(line);
         leave(&mut summary, &mut out)?;
     }
     let mut json = serde_json::json!({
         "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
     });
+    if scattered.is_some() {
+        json["scatter"]["scatter"] = serde_json::json!(scatter);
+    }
     let written = out.commit()?;
     text.push_str(&ending(&written, text::MORE, progress.verbose));
     json["files"] = serde_json::json!(written);
@@ -151,10 +155,10 @@ impl BridgeFlutterArgs {
     }
 }
 
-fn scatter_line(of: &ScatteredOnset) -> String {
-    let (samples, onsets) = (of.scatter.samples, &of.onsets);
+fn scatter_line(onsets: &SampledOnsets) -> String {
     let (mean, deviation) = (onsets.mean_m_s, onsets.standard_deviation_m_s);
     let ([low, high], with) = (onsets.interval_m_s, onsets.speeds_m_s.len());
+    let samples = with + onsets.without_onset;
     format!(
         "Scatter of {samples} samples, {with} of them with an onset: {mean:.3} m/s, standard deviation {deviation:.3} m/s, 95 % of these between {low:.3} and {high:.3} m/s"
     )

@@ -11,6 +11,7 @@ use crate::buffeting::{
 };
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
+use crate::numbered::OnDone;
 use crate::plausibility::{Finding, of_turbulence};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -154,7 +155,7 @@ impl BridgeStudy {
         &self,
         block: &BuffetingBlock,
         speed_m_s: f64,
-        progress: &(dyn Fn(usize, usize) + Sync),
+        progress: OnDone<'_>,
     ) -> Result<BridgeBuffeting> {
         let nodes = self.named(&block.nodes)?;
         let models = self.problem(&self.by_model, block)?;

@@ -92,16 +92,6 @@ impl std::fmt::Display for DerivativeScatter {
     }
 }
 
-/// Distribution of the onset.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ScatteredOnset {
-    /// What scattered.
-    pub scatter: Scatter,
-    /// What came of it.
-    #[serde(flatten)]
-    pub onsets: SampledOnsets,
-}
-
 impl BridgeStudy {
     /// The onset when frequencies, damping and forces scatter: that of the mode which flutters in the mean, followed in every
     /// sample from the onset of the mean; where it cannot be followed the onset is searched among all modes. `progress` is called with the samples
@@ -114,7 +104,7 @@ impl BridgeStudy {
         onset: &Onset,
         scatter: &Scatter,
         progress: OnDone<'_>,
-    ) -> Result<ScatteredOnset> {
+    ) -> Result<SampledOnsets> {
         scatter.check(["frequency", "damping", "derivatives", "samples"])?;
         let sampler = OnsetSampler {
             study: self,
@@ -130,10 +120,7 @@ impl BridgeStudy {
                 "scatter: fewer than two samples have an onset".into(),
             ));
         }
-        Ok(ScatteredOnset {
-            scatter: *scatter,
-            onsets,
-        })
+        Ok(onsets)
     }
 
     /// What makes Gaussian draws of a covariance those of Student's t; none for factors that are stated.

@@ -14,6 +14,7 @@ use crate::buffeting::{
 use crate::error::{Error, Result};
 use crate::files::derivatives::{embedded, is_table_file, named_table_in};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
+use crate::numbered::OnDone;
 use crate::plausibility::{Finding, of_table};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::units::{ReducedFrequencyRange, in_equal_ratios};
@@ -119,7 +120,7 @@ struct Setting<'a> {
 pub(crate) fn buffeting_study(
     study: &WindStudy,
     speeds_m_s: &[f64],
-    progress: &(dyn Fn(usize, usize) + Sync),
+    progress: OnDone<'_>,
 ) -> Result<BuffetingStudy> {
     let setting = Setting::new(study)?;
     let mut responses = Vec::new();
@@ -319,7 +320,7 @@ impl<'a> Setting<'a> {
     fn both_domains(
         &self,
         frequency: &BuffetingResponse,
-        progress: &(dyn Fn(usize, usize) + Sync),
+        progress: OnDone<'_>,
     ) -> Result<TimeDomain> {
         let speed = frequency.speed_m_s;
         let at = self.at(speed)?;

@@ -7,7 +7,7 @@ use super::options::TimeWeights;
 use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
 use super::report::{AlphaGuideline, FitReport, Fitted, MemoryReport};
 use super::time::fitted::FittedSystems;
-use super::time::pass::{Chunk, ColumnOrder, Columns, OnProgress, Pass, PassPlan, pass_over};
+use super::time::pass::{Chunk, ColumnOrder, Columns, Pass, PassPlan, pass_over};
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
@@ -15,6 +15,7 @@ use crate::aerodynamics::laguerre::{
     DiscreteTerm, advance_filters, alpha_lower_bound, discrete_memory,
 };
 use crate::error::{Result, counted, ensure};
+use crate::numbered::OnDone;
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -94,7 +95,7 @@ impl DiscreteFit {
 pub fn fit_discrete(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
 ) -> Result<Fitted> {
     fit.validate()?;
     let records = Records::read(records, fit.static_term)?;
@@ -155,7 +156,7 @@ pub(crate) fn discrete_pass(
     alphas: &[Vec<f64>],
     weights: TimeWeights,
     stretches: usize,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
 ) -> Result<Pass> {
     let plan = PassPlan {
         order,

@@ -51,13 +51,13 @@ impl FitOptions<[TransferSample]> for FrequencyFit {
 
 impl<R: RecordSource> FitOptions<[R]> for TimeFit {
     fn fit(&self, records: &[R]) -> Result<Fitted> {
-        fit_records(&sources(records), self, &|_| ())
+        fit_records(&sources(records), self, &|_, _| ())
     }
 }
 
 impl<R: RecordSource> FitOptions<[R]> for DiscreteFit {
     fn fit(&self, records: &[R]) -> Result<Fitted> {
-        fit_discrete(&sources(records), self, &|_| ())
+        fit_discrete(&sources(records), self, &|_, _| ())
     }
 }
 

@@ -10,11 +10,12 @@ use super::joint::JointFit;
 use super::options::{TimeFit, TimeWeights};
 use super::own::StaticTerm;
 use super::time::continuous::RecordFit;
-use super::time::pass::{ColumnOrder, OnProgress, Pass};
+use super::time::pass::{ColumnOrder, Pass};
 use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Result, ensure};
+use crate::numbered::OnDone;
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
@@ -67,7 +68,7 @@ impl Grid {
         records: &[&dyn RecordSource],
         axis: GridAxis,
         filters_max: usize,
-        progress: OnProgress<'_>,
+        progress: OnDone<'_>,
     ) -> Result<Self> {
         ensure(
             !axis.values().is_empty() && filters_max != 0,
@@ -243,7 +244,7 @@ impl GridAxis {
     }
 
     /// One pass over the records with the filters of all values, every segment factored by itself.
-    fn pass(&self, records: &Records, filters: usize, progress: OnProgress<'_>) -> Result<Pass> {
+    fn pass(&self, records: &Records, filters: usize, progress: OnDone<'_>) -> Result<Pass> {
         let inputs = records.dofs.len();
         match self {
             Self::Discrete(alphas, weights) => {

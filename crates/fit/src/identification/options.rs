@@ -41,7 +41,7 @@ pub enum TimeWeights {
 /// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
 /// let records: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
 /// let fit = TimeFit { form: Form::Rational { lags: 1, added_mass: false }, ..TimeFit::default() };
-/// assert_eq!(fit_records(&records, &fit, &|_| ())?.model.kind(), "rational functions");
+/// assert_eq!(fit_records(&records, &fit, &|_, _| ())?.model.kind(), "rational functions");
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

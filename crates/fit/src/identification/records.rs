@@ -11,12 +11,12 @@ use super::own::describe_own;
 use super::report::{FitReport, Fitted, MemoryReport, SearchReport, enough_rows};
 use super::time::continuous::{RecordFit, padded};
 use super::time::fitted::FittedSystems;
-use super::time::pass::OnProgress;
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::search::{EntryPoles, PASSES, choose_poles};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result, counted};
+use crate::numbered::OnDone;
 use crate::wind_tunnel::RecordSource;
 
 /// Fits a continuous model to records of any speeds and sampling frequencies.
@@ -34,7 +34,7 @@ use crate::wind_tunnel::RecordSource;
 /// let plan = TunnelPlan { sampling_hz: 50.0, segment_s: 12.0, ..TunnelPlan::default() };
 /// let records = plan.records_from_table(&embedded::deck("LN21-5200")?, &Dof::TWO)?;
 /// let records: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
-/// let fitted = fit_records(&records, &TimeFit::default(), &|_| ())?;
+/// let fitted = fit_records(&records, &TimeFit::default(), &|_, _| ())?;
 /// assert!(fitted.report.method.contains("4 records in the time domain"));
 /// # Ok::<(), aerodeck::Error>(())
 /// ```
@@ -45,7 +45,7 @@ use crate::wind_tunnel::RecordSource;
 pub fn fit_records(
     records: &[&dyn RecordSource],
     fit: &TimeFit,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
 ) -> Result<Fitted> {
     fit.validate()?;
     let records = Records::read(records, fit.static_term)?;

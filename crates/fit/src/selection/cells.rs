@@ -4,7 +4,7 @@ use super::folds::{CrossValidation, HeldOut, combine, folds, unpredicted, valida
 use crate::error::Result;
 use crate::flutter::OnsetSearch;
 use crate::identification::Grid;
-use crate::numbered::numbered;
+use crate::numbered::{OnDone, numbered};
 use crate::section::{Dof, Structure};
 use crate::signal::extremes;
 use serde::{Deserialize, Serialize};
@@ -59,7 +59,7 @@ pub struct Selection {
 
 /// Judges every cell with a suspended section, in parallel over the values of the axis.
 ///
-/// `search` says where to look for onsets; `done` is called before and after each value with the number of those that are through.
+/// `search` says where to look for onsets.
 ///
 /// # Errors
 /// None at present: cells that cannot be fitted are refused with their reason.
@@ -67,10 +67,10 @@ pub fn select(
     grid: &Grid,
     structure: &Structure,
     search: &OnsetSearch,
-    done: &(dyn Fn(usize) + Sync),
+    progress: OnDone<'_>,
 ) -> Result<Selection> {
     let folds = folds(grid);
-    let cells = numbered(grid.values().len(), &|all, _| done(all), |value| {
+    let cells = numbered(grid.values().len(), progress, |value| {
         let fits = grid.fits(value, &|_| true).into_iter().zip(1..);
         let of_value = fits.zip(validate(&folds, grid, value));
         let cell = |((fit, filters), held_out): (_, Option<HeldOut>)| {

@@ -29,12 +29,12 @@ fn selected_with(
     axis: GridAxis,
     filters: usize,
 ) -> Selection {
-    let grid = Grid::new(&sources(records), axis, filters, &|_| ()).unwrap();
+    let grid = Grid::new(&sources(records), axis, filters, &|_, _| ()).unwrap();
     let search = OnsetSearch {
         speed_max_m_s: 60.0,
         speeds: 120,
     };
-    select(&grid, &section.structure().unwrap(), &search, &|_| ()).unwrap()
+    select(&grid, &section.structure().unwrap(), &search, &|_, _| ()).unwrap()
 }
 
 /// On LN21-5500 four filters with a free pole fit best, cancel, and flutter below 10 m/s, far outside the tested range
@@ -151,7 +151,7 @@ fn metrics_tell_good_cells_from_poor_ones() {
         .unwrap();
     let sources = sources(&records);
     let continuous = GridAxis::Continuous(vec![0.3], Box::default());
-    let grid = Grid::new(&sources, continuous, 3, &|_| ()).unwrap();
+    let grid = Grid::new(&sources, continuous, 3, &|_, _| ()).unwrap();
     let metrics = metric_grid(&grid, &sources, 1.1).unwrap();
     assert_eq!(metrics.len(), 2);
     for map in &metrics {
@@ -164,7 +164,7 @@ fn metrics_tell_good_cells_from_poor_ones() {
         assert!(good.magnitude_warped >= good.magnitude - 1e-12);
     }
     let discrete = GridAxis::Discrete(vec![0.6], TimeWeights::None);
-    let grid = Grid::new(&sources, discrete, 1, &|_| ()).unwrap();
+    let grid = Grid::new(&sources, discrete, 1, &|_, _| ()).unwrap();
     let lift = metric_grid(&grid, &sources, 1.1).unwrap().remove(0);
     let lift = lift.cells[0].as_ref().unwrap();
     // one filter without feed-through cannot turn the phase of the lift due to heave
@@ -185,7 +185,7 @@ fn a_force_without_a_lag_has_no_phase_metric() {
         .records_from_model(&RationalModel::jones_flat_plate(), "Jones", 0.5)
         .unwrap();
     let axis = || GridAxis::Continuous(vec![0.3], Box::default());
-    let grid = Grid::new(&self::sources(&records), axis(), 1, &|_| ()).unwrap();
+    let grid = Grid::new(&self::sources(&records), axis(), 1, &|_, _| ()).unwrap();
     for segment in records.iter_mut().flat_map(|r| &mut r.header.segments) {
         (segment.start_s, segment.end_s) = (20.0, 20.0 + 1.5 / segment.frequency_hz);
     }

@@ -128,8 +128,8 @@ impl<'a> KnownDeck<'a> {
     ) -> Result<(CoefficientUncertainty, Option<Onset>, ReducedFrequencyRange)> {
         let sources = sources(records);
         let fit = self.plan.time_fit();
-        let Fitted { model, report } = fit_records(&sources, &fit, &|_| ())?;
-        let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ())?;
+        let Fitted { model, report } = fit_records(&sources, &fit, &|_, _| ())?;
+        let estimate = record_uncertainty(&sources, &fit, &report, None, &|_, _| ())?;
         let section = CoupledSection::with_model(&self.structure, &model)?;
         let search = OnsetSearch::up_to(SPEED_MAX_M_S);
         let found = find_onset("", &section, &search, Some(report.tested_range))?;

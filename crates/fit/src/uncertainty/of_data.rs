@@ -5,8 +5,9 @@ use super::{discrete_uncertainty, record_uncertainty, table_uncertainty};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::Result;
 use crate::identification::{
-    DiscreteFit, Fitted, FrequencyFit, OnProgress, TimeFit, fit_discrete, fit_records, fit_table,
+    DiscreteFit, Fitted, FrequencyFit, TimeFit, fit_discrete, fit_records, fit_table,
 };
+use crate::numbered::OnDone;
 use crate::section::Dof;
 use crate::wind_tunnel::RecordSource;
 
@@ -52,7 +53,7 @@ impl ModelOfData {
         dofs: &[Dof],
         fit: &TimeFit,
         deck: Option<&str>,
-        progress: OnProgress<'_>,
+        progress: OnDone<'_>,
     ) -> Result<Self> {
         let own = || -> Result<(Fitted, Result<CoefficientUncertainty>)> {
             let fitted = fit_records(records, fit, progress)?;
@@ -80,7 +81,7 @@ impl ModelOfData {
         records: &[&dyn RecordSource],
         fit: &DiscreteFit,
         deck: Option<&str>,
-        progress: OnProgress<'_>,
+        progress: OnDone<'_>,
     ) -> Result<Self> {
         let fitted = fit_discrete(records, fit, progress)?;
         let estimate = discrete_uncertainty(records, fit, &fitted.model, deck, progress);
@@ -118,7 +119,7 @@ mod tests {
             let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
             let dofs = sources[0].header().dofs.clone();
             let fit = TimeFit::default();
-            let of = ModelOfData::of_records(&sources, &dofs, &fit, None, &|_| ()).unwrap();
+            let of = ModelOfData::of_records(&sources, &dofs, &fit, None, &|_, _| ()).unwrap();
             let found = of.forms.unwrap().unwrap().fits;
             let in_order = |f: &AdmissibleForm| f.model.dofs() == Dof::TWO;
             assert!(found.iter().all(in_order));

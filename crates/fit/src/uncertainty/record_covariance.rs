@@ -14,9 +14,10 @@ use crate::identification::options::TimeFit;
 use crate::identification::own::StaticTerm;
 use crate::identification::report::FitReport;
 use crate::identification::time::continuous::{RecordFit, padded};
-use crate::identification::time::pass::{ColumnOrder, OnProgress, Stretch};
+use crate::identification::time::pass::{ColumnOrder, Stretch};
 use crate::identification::time::record::{DimensionlessRecord, Records};
 use crate::identification::{DiscreteFit, EntryReport};
+use crate::numbered::OnDone;
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
@@ -36,7 +37,7 @@ pub fn record_uncertainty(
     fit: &TimeFit,
     report: &FitReport,
     deck: Option<&str>,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
 ) -> Result<CoefficientUncertainty> {
     let records = Records::read(records, fit.static_term)?;
     if fit.static_term == StaticTerm::Estimated {
@@ -225,7 +226,7 @@ pub fn discrete_uncertainty(
     fit: &DiscreteFit,
     model: &Model,
     deck: Option<&str>,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
 ) -> Result<CoefficientUncertainty> {
     let Model::DiscreteLaguerre(model) = model else {
         let expected = "a discrete Laguerre model";

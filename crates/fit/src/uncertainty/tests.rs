@@ -103,8 +103,8 @@ fn gradients_are_differences_of_onsets() {
         .unwrap();
     let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
     let fit = DiscreteFit::default();
-    let model = fit_discrete(&sources, &fit, &|_| ()).unwrap().model;
-    let discrete = discrete_uncertainty(&sources, &fit, &model, None, &|_| ()).unwrap();
+    let model = fit_discrete(&sources, &fit, &|_, _| ()).unwrap().model;
+    let discrete = discrete_uncertainty(&sources, &fit, &model, None, &|_, _| ()).unwrap();
     for (model, estimate) in [continuous, (model, discrete)] {
         let at = onset(&model);
         let gradient = onset_gradient(&estimate, &structure(), speed_and_omega(&at)).unwrap();

@@ -56,7 +56,7 @@ pub struct Processed {
     pub stages: Vec<Vec<SectionSignals>>,
 }
 
-/// Processes every run of a campaign; `progress` is called with the number of runs done.
+/// Processes every run of a campaign; `progress` is called with how many runs are done, and how many there are.
 ///
 /// # Errors
 /// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; of several runs all, in their
@@ -64,7 +64,7 @@ pub struct Processed {
 pub fn process(
     campaign: &RawCampaign,
     options: &ProcessingOptions,
-    progress: &(dyn Fn(usize) + Sync),
+    progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Processed> {
     options.validate()?;
     campaign.rig.validate()?;
@@ -87,7 +87,10 @@ pub fn process(
     let done = AtomicUsize::new(0);
     let process = |p: PreparedRun<'_>| {
         let run = run::process_run(p, campaign, &dofs, lag_s, options)?;
-        progress(1 + done.fetch_add(1, Ordering::Relaxed));
+        progress(
+            1 + done.fetch_add(1, Ordering::Relaxed),
+            campaign.runs.len(),
+        );
         Ok(run)
     };
     let processed = prepared.into_par_iter().map(process).collect();

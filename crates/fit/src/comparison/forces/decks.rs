@@ -46,7 +46,7 @@ pub fn compare_decks(options: &CompareOptions, progress: OnDone<'_>) -> Result<D
     ensure(!options.decks.is_empty(), "decks", "at least one", "none")?;
     // deck and speed of the training, and the fit
     let train = |deck: &TestedDeck| -> Result<((String, f64), Fitted)> {
-        let fitted = fit_discrete(&deck.training(), &options.laguerre, &|_| ())?;
+        let fitted = fit_discrete(&deck.training(), &options.laguerre, &|_, _| ())?;
         Ok(((deck.table.name.clone(), deck.training_speed_m_s()), fitted))
     };
     let teacher = options.trained_on.as_ref();

@@ -125,9 +125,9 @@ fn fits(
     sources: &[&dyn RecordSource],
     samples: &[TransferSample],
 ) -> Result<[(String, Fitted); 3]> {
-    let discrete = fit_discrete(sources, &options.laguerre, &|_| ())?;
+    let discrete = fit_discrete(sources, &options.laguerre, &|_, _| ())?;
     let rational = fit_table(samples, &options.dofs, &thesis_rational_functions())?;
-    let continuous = fit_records(sources, &with_feed_through(), &|_| ())?;
+    let continuous = fit_records(sources, &with_feed_through(), &|_, _| ())?;
     Ok([
         (format!("Laguerre, {}", options.laguerre_name()), discrete),
         ("rational functions, one lag".to_owned(), rational),

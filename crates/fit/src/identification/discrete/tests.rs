@@ -15,7 +15,7 @@ fn thesis_formulation_on_the_flat_plate() {
             filters,
             ..DiscreteFit::default()
         };
-        let Fitted { model, report } = fit_discrete(&sources(&all), &fit, &|_| ()).unwrap();
+        let Fitted { model, report } = fit_discrete(&sources(&all), &fit, &|_, _| ()).unwrap();
         assert!((onset_m_s(&model) - expected).abs() < 0.1);
         let guideline = report.alpha_guideline.unwrap();
         assert!((guideline.lower_bound - 0.8547).abs() < 5e-5);
@@ -54,7 +54,9 @@ fn discrete_model_is_recovered() {
         filters: 2,
         ..DiscreteFit::default()
     };
-    let model = fit_discrete(&sources(&all), &fit, &|_| ()).unwrap().model;
+    let model = fit_discrete(&sources(&all), &fit, &|_, _| ())
+        .unwrap()
+        .model;
     let Model::DiscreteLaguerre(model) = model else {
         panic!("not discrete");
     };
@@ -76,7 +78,7 @@ fn speeds_are_stacked_at_one_step() {
         ..DiscreteFit::default()
     };
     let both = records(&FlatPlate::default(), &[8.0, 5.3], 0.0, 1);
-    let Fitted { model, report } = fit_discrete(&sources(&both), &fit, &|_| ()).unwrap();
+    let Fitted { model, report } = fit_discrete(&sources(&both), &fit, &|_, _| ()).unwrap();
     let Model::DiscreteLaguerre(discrete) = &model else {
         panic!("not discrete");
     };
@@ -106,7 +108,7 @@ fn impossible_options_are_refused() {
             alpha,
             ..DiscreteFit::default()
         };
-        let error = fit_discrete(&sources(&all), &fit, &|_| ()).unwrap_err();
+        let error = fit_discrete(&sources(&all), &fit, &|_, _| ()).unwrap_err();
         assert_eq!(error.to_string(), expected);
     }
 }
@@ -120,7 +122,9 @@ fn thesis_formulation_on_ln21_5200() {
         .unwrap();
     for (pair, expected) in all.chunks(2).zip([37.87, 38.78]) {
         let fit = DiscreteFit::default();
-        let model = fit_discrete(&sources(pair), &fit, &|_| ()).unwrap().model;
+        let model = fit_discrete(&sources(pair), &fit, &|_, _| ())
+            .unwrap()
+            .model;
         let onset = onset_m_s(&model);
         assert!((onset - expected).abs() < 0.15, "{onset} for {expected}");
     }

@@ -26,7 +26,7 @@ fn discrete_cells_are_single_fits() {
     let sources = sources(&made);
     let alphas = [0.5, 0.8];
     let axis = GridAxis::Discrete(alphas.to_vec(), TimeWeights::None);
-    let grid = Grid::new(&sources, axis, 4, &|_| ()).unwrap();
+    let grid = Grid::new(&sources, axis, 4, &|_, _| ()).unwrap();
     for (a, alpha) in alphas.into_iter().enumerate() {
         for (l, cell) in grid.fits(a, &|_| true).into_iter().enumerate() {
             let fit = DiscreteFit {
@@ -34,7 +34,7 @@ fn discrete_cells_are_single_fits() {
                 alpha,
                 ..DiscreteFit::default()
             };
-            let Fitted { model, report } = fit_discrete(&sources, &fit, &|_| ()).unwrap();
+            let Fitted { model, report } = fit_discrete(&sources, &fit, &|_, _| ()).unwrap();
             let cell = cell.unwrap();
             // rounding times the condition of four filters
             assert!(differ(&cell.model, &model) < 1e-8, "{alpha} {l}");
@@ -50,14 +50,14 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
     let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.0, 3);
     let sources = sources(&made);
     let axis = GridAxis::Continuous(vec![0.3], Box::new(records_alone()));
-    let grid = Grid::new(&sources, axis, 3, &|_| ()).unwrap();
+    let grid = Grid::new(&sources, axis, 3, &|_, _| ()).unwrap();
     let cell = grid.fits(0, &|_| true).pop().unwrap().unwrap();
     let fit = TimeFit {
         form: Form::laguerre(3),
         poles: PoleSearch::fixed(&[0.3]),
         ..records_alone()
     };
-    let Fitted { model, report } = fit_records(&sources, &fit, &|_| ()).unwrap();
+    let Fitted { model, report } = fit_records(&sources, &fit, &|_, _| ()).unwrap();
     assert!(differ(&cell.model, &model) < 1e-3);
     let objective = report.orders[2].objective;
     assert!((cell.objective / objective - 1.0).abs() < 1e-2);
@@ -75,8 +75,8 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
 fn leaving_stretches_out_is_a_fit_to_the_others() {
     let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.02, 3);
     let axis = || GridAxis::Continuous(vec![0.3], Box::new(records_alone()));
-    let both = Grid::new(&sources(&made), axis(), 2, &|_| ()).unwrap();
-    let high = Grid::new(&sources(&made[..2]), axis(), 2, &|_| ()).unwrap();
+    let both = Grid::new(&sources(&made), axis(), 2, &|_, _| ()).unwrap();
+    let high = Grid::new(&sources(&made[..2]), axis(), 2, &|_, _| ()).unwrap();
     let keep = |s: usize| both.pass.stretches[s].mean_speed_m_s > 8.0;
     let a = both.fits(0, &keep).pop().unwrap().unwrap();
     let b = high.fits(0, &|_| true).pop().unwrap().unwrap();
@@ -87,7 +87,9 @@ fn leaving_stretches_out_is_a_fit_to_the_others() {
 fn more_filters_than_any_data_support_are_refused() {
     for many in [101, 100_000, usize::MAX] {
         let axis = GridAxis::Discrete(vec![0.6], TimeWeights::None);
-        let error = Grid::new(&[], axis, many, &|_| ()).map(|_| ()).unwrap_err();
+        let error = Grid::new(&[], axis, many, &|_, _| ())
+            .map(|_| ())
+            .unwrap_err();
         assert!(error.to_string().contains("at most 100"), "{error}");
     }
 }

@@ -1,16 +1,16 @@
 use super::*;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
+use crate::identification::TimeWeights;
 use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::form::PoleSearch;
 use crate::identification::form::{FeedThrough, Form};
 use crate::identification::sources;
 use crate::identification::testing::{onset_m_s, records, records_alone};
-use crate::identification::{FitProgress, TimeWeights};
 use crate::trained_model::Model;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordHeader};
 
-fn quiet(_: FitProgress) {}
+fn quiet(_: usize, _: usize) {}
 
 fn jones_fit(weights: TimeWeights) -> TimeFit {
     TimeFit {
@@ -138,12 +138,13 @@ fn clipped_records_are_refused() {
 fn flat_plate_from_records() {
     let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let calls = std::sync::atomic::AtomicUsize::new(0);
-    let count = |p: FitProgress| {
-        assert!(p.pass <= p.passes && p.records_done <= p.records);
+    let count = |done, total| {
+        assert!(done <= total && total == 5 * 2);
         calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     };
     let default = fit_records(&sources(&all), &TimeFit::default(), &count).unwrap();
-    assert_eq!(calls.into_inner(), 5 * 2);
+    // before and after each record of each pass
+    assert_eq!(calls.into_inner(), 2 * 5 * 2);
     assert_eq!(default.report.orders.len(), 5);
     let form = Form::default().with_filters(3).unwrap();
     let three = TimeFit {

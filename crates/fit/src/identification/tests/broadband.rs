@@ -43,7 +43,7 @@ fn broadband_motions_train_models() {
             poles: PoleSearch::fixed(truth.lags.of_force(0)),
             ..records_alone()
         };
-        let Fitted { model, report } = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
+        let Fitted { model, report } = fit_records(&sources(&all), &fit, &|_, _| ()).unwrap();
         let error = distance(&model, &truth, &[0.12, 0.5, 0.9]);
         assert!(error < 1e-3, "{motion:?}: {error}");
         let range = report.tested_range;
@@ -64,7 +64,7 @@ fn broadband_motions_train_models() {
             static_term: StaticTerm::None,
             ..DiscreteFit::default()
         };
-        fit_discrete(&sources(&all), &fit, &|_| ())
+        fit_discrete(&sources(&all), &fit, &|_, _| ())
             .unwrap()
             .report
             .condition
@@ -103,7 +103,7 @@ fn a_table_is_interpolated_only_on_request() {
         poles: PoleSearch::fixed(&[0.5]),
         ..records_alone()
     };
-    let noise = fit_records(&sources(&all), &fit, &|_| ()).unwrap().model;
+    let noise = fit_records(&sources(&all), &fit, &|_, _| ()).unwrap().model;
     let frequency = FrequencyFit {
         poles: PoleSearch::fixed(&[0.5]),
         ..table_alone()

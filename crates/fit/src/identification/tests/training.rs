@@ -60,7 +60,7 @@ fn three_motions_give_nine_transfer_functions() {
     let Fitted {
         model: again,
         report,
-    } = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
+    } = fit_records(&sources(&all), &fit, &|_, _| ()).unwrap();
     assert_eq!(report.entries.len(), 9);
     // what the low-pass leaves of the images above half the sampling frequency
     let error = distance(&again, &model, &[0.1, 0.3, 0.7]);
@@ -70,7 +70,7 @@ fn three_motions_give_nine_transfer_functions() {
     let all = TunnelPlan::default()
         .records_from_table(&deck, &Dof::THREE)
         .unwrap();
-    let in_time = fit_records(&sources(&all), &fit, &|_| ()).unwrap().model;
+    let in_time = fit_records(&sources(&all), &fit, &|_, _| ()).unwrap().model;
     // measured scatter between the two speeds is weighted by segment here and by point there
     let error = distance(&in_time, &model, &[0.15, 0.3, 0.6, 0.9]);
     assert!(error < 0.1, "{error}");
@@ -86,7 +86,7 @@ fn nine_l_coefficients_match_a_fit_in_the_frequency_domain() {
         .records_from_table(&deck, &Dof::THREE)
         .unwrap();
     let fit = DiscreteFit::default();
-    let Fitted { model, report } = fit_discrete(&sources(&all[..3]), &fit, &|_| ()).unwrap();
+    let Fitted { model, report } = fit_discrete(&sources(&all[..3]), &fit, &|_, _| ()).unwrap();
     let count: usize = report.entries.iter().map(|e| e.coefficients.len()).sum();
     assert_eq!(count, 27);
     let Model::DiscreteLaguerre(discrete) = &model else {
@@ -164,7 +164,7 @@ fn discrete_filters_of_one_transfer_function_are_recovered() {
     }
     both.header.segments.clear();
     for all in [parts, vec![both]] {
-        let Fitted { model, report } = fit_discrete(&sources(&all), &fit, &|_| ()).unwrap();
+        let Fitted { model, report } = fit_discrete(&sources(&all), &fit, &|_, _| ()).unwrap();
         let Model::DiscreteLaguerre(model) = model else {
             panic!("not discrete");
         };
@@ -222,7 +222,9 @@ fn continuous_filters_of_one_transfer_function_are_recovered() {
         own: own(Some(vec![0.9])),
         ..records_alone()
     };
-    let found = fit_records(&sources(&all), &stated, &|_| ()).unwrap().model;
+    let found = fit_records(&sources(&all), &stated, &|_, _| ())
+        .unwrap()
+        .model;
     // images above half the sampling frequency, as for shared poles
     let error = distance(&found, &truth, &[0.1, 0.3, 0.8]);
     assert!(error < 1e-4, "{error}");
@@ -230,7 +232,7 @@ fn continuous_filters_of_one_transfer_function_are_recovered() {
         own: own(None),
         ..stated
     };
-    let report = fit_records(&sources(&all), &searched, &|_| ())
+    let report = fit_records(&sources(&all), &searched, &|_, _| ())
         .unwrap()
         .report;
     assert_eq!(report.search.len(), 1);
@@ -263,7 +265,7 @@ fn static_terms_are_estimated_or_removed() {
             static_term,
             ..records_alone()
         };
-        fit_records(&sources(&all), &fit, &|_| ()).unwrap()
+        fit_records(&sources(&all), &fit, &|_, _| ()).unwrap()
     };
     let Fitted { model, report } = fitted(StaticTerm::Estimated);
     assert!(distance(&model, &truth, &[0.1, 0.9]) < 1e-3);
@@ -288,7 +290,9 @@ fn too_little_rest_before_the_motion_is_said() {
     let whole = records(&RationalModel::jones_flat_plate(), &[8.17], 0.0, 1);
     let discrete = |all: &[Record]| {
         let fit = DiscreteFit::default();
-        fit_discrete(&sources(all), &fit, &|_| ()).unwrap().report
+        fit_discrete(&sources(all), &fit, &|_, _| ())
+            .unwrap()
+            .report
     };
     let continuous = |all: &[Record], discard_s| {
         let fit = TimeFit {
@@ -296,7 +300,7 @@ fn too_little_rest_before_the_motion_is_said() {
             discard_s,
             ..records_alone()
         };
-        fit_records(&sources(all), &fit, &|_| ()).unwrap().report
+        fit_records(&sources(all), &fit, &|_, _| ()).unwrap().report
     };
     let remembered = |r: &FitReport| r.notes.iter().any(|n| n.contains("the filters remember"));
     let report = discrete(&whole);

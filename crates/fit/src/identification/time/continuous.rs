@@ -2,12 +2,13 @@
 
 use super::filters::ContinuousColumns;
 use super::low_pass::NOISE_BANDWIDTH;
-use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass_over};
+use super::pass::{ColumnOrder, Pass, PassPlan, pass_over};
 use super::record::{DimensionlessRecord, Records};
 use crate::error::{Result, ensure};
 use crate::identification::basis::Basis;
 use crate::identification::options::TimeFit;
 use crate::identification::own::StaticTerm;
+use crate::numbered::OnDone;
 
 /// Default cut-off of the low-pass over the sampling frequency.
 const CUTOFF_OVER_SAMPLING: f64 = 1.0 / 20.0;
@@ -16,7 +17,7 @@ const CUTOFF_OVER_SAMPLING: f64 = 1.0 / 20.0;
 pub(crate) struct RecordFit<'a> {
     pub fit: &'a TimeFit,
     pub records: &'a Records,
-    pub progress: OnProgress<'a>,
+    pub progress: OnDone<'a>,
 }
 
 /// A chain made as long as the longest of a pass (see [`RecordFit::pass`]); its first filters stay what they are.

@@ -6,10 +6,9 @@ use super::signals::SignalBlock;
 use crate::error::{Result, ensure};
 use crate::identification::least_squares::{BLOCK_ROWS, Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
-use crate::numbered::numbered;
+use crate::numbered::{OnDone, numbered};
 use crate::wind_tunnel::Segment;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Length of the stretches of a record without segments, s: many times the memory of the forces.
 const STRETCH_S: f64 = 10.0;
@@ -50,22 +49,6 @@ impl ColumnOrder {
         constant.chain(used).collect()
     }
 }
-
-/// How far a fit to records has come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FitProgress {
-    /// Pass over the records, from 1.
-    pub pass: usize,
-    /// Number of passes.
-    pub passes: usize,
-    /// Records done in this pass.
-    pub records_done: usize,
-    /// Number of records.
-    pub records: usize,
-}
-
-/// Called after every record of every pass, from any thread.
-pub type OnProgress<'a> = &'a (dyn Fn(FitProgress) + Sync);
 
 /// Consecutive samples, at most [`BLOCK_ROWS`], one slice per degree of freedom.
 pub(crate) struct Chunk<'a> {
@@ -162,21 +145,15 @@ pub(crate) struct Pass {
 pub(crate) fn pass_over<C: Columns>(
     records: &[DimensionlessRecord],
     plan: &PassPlan,
-    progress: OnProgress<'_>,
+    progress: OnDone<'_>,
     make: impl Fn(&DimensionlessRecord) -> Result<C> + Sync,
 ) -> Result<Pass> {
-    let finished = AtomicUsize::new(0);
     let steps_s = records.iter().map(|record| record.step_s);
     let finest_s = steps_s.fold(f64::INFINITY, f64::min);
-    let parts = numbered(records.len(), &|_, _| (), |r| {
-        let part = one_record(r, &records[r], plan, finest_s, &mut make(&records[r])?);
-        progress(FitProgress {
-            pass: plan.number.0,
-            passes: plan.number.1,
-            records_done: 1 + finished.fetch_add(1, Ordering::Relaxed),
-            records: records.len(),
-        });
-        part
+    let (pass, passes) = plan.number;
+    let of_all = |done, count| progress((pass - 1) * count + done, passes * count);
+    let parts = numbered(records.len(), &of_all, |r| {
+        one_record(r, &records[r], plan, finest_s, &mut make(&records[r])?)
     })?;
     Ok(Pass {
         order: plan.order,

@@ -261,8 +261,8 @@ fn forces_of_zero_leave_the_scatter_of_the_others() {
         weights: TimeWeights::PerSegment,
         ..TimeFit::default()
     };
-    let report = fit_records(&sources, &fit, &|_| ()).unwrap().report;
-    let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ()).unwrap();
+    let report = fit_records(&sources, &fit, &|_, _| ()).unwrap().report;
+    let estimate = record_uncertainty(&sources, &fit, &report, None, &|_, _| ()).unwrap();
     for (speed, alone) in estimate.at_each_speed() {
         let first = &alone.unwrap().parameters[0];
         assert_eq!(first.force, Some(Dof::Vertical));

@@ -102,8 +102,8 @@ fn parameters_of_own_filters_make_the_model_of_records() {
             own,
             ..TimeFit::default()
         };
-        let Fitted { model, report } = fit_records(&sources, &fit, &|_| ()).unwrap();
-        let estimate = record_uncertainty(&sources, &fit, &report, None, &|_| ()).unwrap();
+        let Fitted { model, report } = fit_records(&sources, &fit, &|_, _| ()).unwrap();
+        let estimate = record_uncertainty(&sources, &fit, &report, None, &|_, _| ()).unwrap();
         error_of(&model, &estimate)
     };
     for own in kinds() {

@@ -19,11 +19,11 @@ fn short(mut plan: VirtualCampaignPlan) -> VirtualCampaignPlan {
 }
 
 fn done(raw: &RawCampaign, options: &ProcessingOptions) -> Processed {
-    process(raw, options, &|_| {}).unwrap()
+    process(raw, options, &|_, _| {}).unwrap()
 }
 
 fn refused(raw: &RawCampaign) -> String {
-    process(raw, &ProcessingOptions::default(), &|_| {})
+    process(raw, &ProcessingOptions::default(), &|_, _| {})
         .unwrap_err()
         .to_string()
 }
@@ -342,7 +342,7 @@ fn bad_recordings_name_run_channel_and_sample() {
     );
     let mut options = ProcessingOptions::default();
     options.low_pass.cutoff_hz = Some(120.0);
-    let message = process(&made.raw, &options, &|_| {})
+    let message = process(&made.raw, &options, &|_, _| {})
         .unwrap_err()
         .to_string();
     assert!(

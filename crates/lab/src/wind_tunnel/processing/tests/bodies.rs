@@ -149,7 +149,8 @@ fn exchanged_motions_show_in_the_inertia() {
     raw.rig.model_mass_kg = None;
     raw.rig.model_inertia_kg_m2 = None;
     everywhere(&mut raw, |r| r.motion.swap(0, 2));
-    let Err(Error::Several(errors)) = process(&raw, &ProcessingOptions::default(), &|_| {}) else {
+    let Err(Error::Several(errors)) = process(&raw, &ProcessingOptions::default(), &|_, _| {})
+    else {
         panic!("both runs are wrong");
     };
     for error in errors {
