@@ -1,7 +1,7 @@
 //! The stages of a study with their files: what `study` runs through and each command does alone.
 
 use super::figures;
-use super::report::folder::digest;
+use super::report::folder::{SUMMARY, digest};
 use super::vocabulary::{
     Error, Export, FlutterStudy, Label, OutputDir, Progress, Result, Runtime, Study, TrainedModel,
     Verdict, attempt, ensure, file_name,
@@ -180,6 +180,21 @@ impl<'a> Stages<'a> {
             ..Export::default()
         };
         package(model, &Runtime::available()?, export).map_err(or_allow_unstable)
+    }
+}
+
+/// Models and fits that an earlier study says it wrote there, of which this one has none, go.
+pub(super) fn outdate_models(out: &mut OutputDir) {
+    let text = std::fs::read_to_string(out.target(SUMMARY)).unwrap_or_default();
+    let earlier: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let files = earlier["files"].as_array().into_iter().flatten();
+    for file in files.filter_map(serde_json::Value::as_str).map(Path::new) {
+        // by folder and name: it may have been run from elsewhere
+        for folder in [MODELS, FITS].map(Path::new) {
+            let name = file.file_name().filter(|n| file.ends_with(folder.join(n)));
+            name.into_iter()
+                .for_each(|name| out.outdated(folder.join(name)));
+        }
     }
 }
 

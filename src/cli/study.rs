@@ -278,6 +278,7 @@ impl Stages<'_> {
     fn finish(mut self, mut summary: Summary) -> Result<Answer> {
         self.out.stage(REPORT)?;
         self.out.stage(SUMMARY)?;
+        stages::outdate_models(&mut self.out);
         summary.files = self.out.targets();
         summary.files.sort();
         summary.sha1 = report::digests_of_run(self.out.staging())?;
