@@ -341,12 +341,12 @@ fn no_room(kind: ErrorKind) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cli, groups};
+    use super::{Cli, command};
     use clap::CommandFactory as _;
 
     #[test]
     fn every_command_stands_in_one_group() {
-        let mut grouped: Vec<&str> = groups::GROUPS
+        let mut grouped: Vec<&str> = command::GROUPS
             .iter()
             .flat_map(|(_, names)| names.split(' '))
             .collect();

@@ -9,6 +9,21 @@ use clap::Subcommand;
 use clap_complete::Shell;
 use std::path::PathBuf;
 
+/// What commands are for, and which they are, in the order in which a newcomer meets them.
+pub(super) const GROUPS: [(&str, &str); 5] = [
+    (
+        "Answers",
+        "demo study flutter bridge quasi-steady buffeting monte-carlo simulate",
+    ),
+    ("Data", "new derivatives campaign process tunnel"),
+    ("Models", "train select coverage compare"),
+    ("FMUs", "fmu ssp"),
+    (
+        "Reports and checks",
+        "report plot validate thesis completions",
+    ),
+];
+
 #[derive(Subcommand)]
 pub(super) enum Command {
     /// Run the whole chain on a measured bridge deck (NTNU Langenuen LN21-5200), which is built in

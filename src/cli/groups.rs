@@ -1,23 +1,9 @@
 //! The commands by what they are for: their help, and the page of the manual that lists them.
 
-use super::wrapping;
+use super::{command::GROUPS, wrapping};
 use clap::Command;
 use std::fmt::Write as _;
 
-/// What commands are for, and which they are, in the order in which a newcomer meets them.
-pub(super) const GROUPS: [(&str, &str); 5] = [
-    (
-        "Answers",
-        "demo study flutter bridge quasi-steady buffeting monte-carlo simulate",
-    ),
-    ("Data", "new derivatives campaign process tunnel"),
-    ("Models", "train select coverage compare"),
-    ("FMUs", "fmu ssp"),
-    (
-        "Reports and checks",
-        "report plot validate thesis completions",
-    ),
-];
 const TEMPLATE: &str = "{about-with-newline}\n{usage-heading} {usage}\n\n";
 
 /// The command line with its commands in groups.
