@@ -183,17 +183,18 @@ impl<'a> Stages<'a> {
     }
 }
 
-/// Models and fits that an earlier study says it wrote there, of which this one has none, go.
+/// Models and fits that an earlier study says it wrote there, of which this one has none, go; those of a bridge stay.
 pub(super) fn outdate_models(out: &mut OutputDir) {
     let text = std::fs::read_to_string(out.target(SUMMARY)).unwrap_or_default();
     let earlier: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    let files = earlier["files"].as_array().into_iter().flatten();
-    for file in files.filter_map(serde_json::Value::as_str).map(Path::new) {
+    let files = earlier["study"].as_str().and(earlier["files"].as_array());
+    let files = files.into_iter().flatten().filter_map(|f| f.as_str());
+    for file in files.map(Path::new) {
         // by folder and name: it may have been run from elsewhere
         for folder in [MODELS, FITS].map(Path::new) {
-            let name = file.file_name().filter(|n| file.ends_with(folder.join(n)));
-            name.into_iter()
-                .for_each(|name| out.outdated(folder.join(name)));
+            if let Some(name) = file.file_name().filter(|n| file.ends_with(folder.join(n))) {
+                out.outdated(folder.join(name));
+            }
         }
     }
 }

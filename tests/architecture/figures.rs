@@ -129,7 +129,7 @@ fn the_house_does_not_grow() {
     let (found, whole) = (figures(), of_every_file());
     let core = found.lines["crates/core/src"];
     let table = [
-        ("code lines", found.line_count(), 81_671),
+        ("code lines", found.line_count(), 81_670),
         ("code lines of the core", core, 12_971),
         ("types", found.type_count(), 814),
         ("names of several types", found.names_used_twice(), 0),

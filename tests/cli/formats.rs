@@ -182,21 +182,24 @@ fn models_of_an_earlier_table_are_refused() {
     succeeds(at, &["flutter", "study.toml"]);
 }
 
-/// Models and fits that a study no longer has do not stand beside those of its next run; what others put there stays.
+/// Models and fits that a study no longer has do not stand beside those of its next run; what a bridge or others put there stays.
 #[test]
 fn models_that_a_study_no_longer_has_go() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
     succeeds(at, &["new", "--deck", "LN21-5200"]);
+    let out = at.join("out");
+    fs::create_dir_all(out.join("models")).unwrap();
+    let of_bridge = r#"{ "bridge": "girder", "files": ["out/models/own.json"] }"#;
+    fs::write(out.join("summary.json"), of_bridge).unwrap();
+    fs::write(out.join("models/own.json"), "{}").unwrap();
     let run = ["study", "study.toml", "--out", "out", "--no-figures"];
     succeeds(at, &run);
-    let models = at.join("out/models");
-    fs::copy(models.join("laguerre.json"), models.join("own.json")).unwrap();
     let text = fs::read_to_string(at.join("study.toml")).unwrap();
     let renamed = text.replace("\"rational functions\"", "\"lags\"");
     fs::write(at.join("study.toml"), renamed).unwrap();
     succeeds(at, &[&run[..], &["--force"]].concat());
-    let stands = |name: &str| at.join("out").join(name).exists();
+    let stands = |name: &str| out.join(name).exists();
     let own = [
         "models/laguerre.json",
         "models/own.json",

@@ -87,10 +87,8 @@ pub fn process(
     let done = AtomicUsize::new(0);
     let process = |p: PreparedRun<'_>| {
         let run = run::process_run(p, campaign, &dofs, lag_s, options)?;
-        progress(
-            1 + done.fetch_add(1, Ordering::Relaxed),
-            campaign.runs.len(),
-        );
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
+        progress(done, campaign.runs.len());
         Ok(run)
     };
     let processed = prepared.into_par_iter().map(process).collect();
